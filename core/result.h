@@ -17,7 +17,8 @@ enum class ErrorKind {
     OutOfGpuMemory, // the driver's or the system's, not the budget
     OverBudget,
     DeviceLost,
-    Cancelled
+    Cancelled,
+    Unreadable // what was saved is damaged, or cannot be read
 };
 
 /// One sentence: the file, line or argument, the value found and the value expected.

@@ -5,12 +5,14 @@
 
 #include "core/cutout.h"
 #include "core/file/mapped_file.h"
+#include "core/file/scene_on_disk.h"
 #include "core/soup.h"
 
 #include <algorithm>
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -251,6 +253,7 @@ struct Scene {
     std::optional<Instancing> instancing; // none: the file has no instances
     std::vector<MappedFile> files;        // hold the bytes of borrowing chunks and of `saved`
     Bytes saved; // levels that the plugin saved (ovc_scene_config.saved), or empty
+    std::unique_ptr<SceneOnDisk> on_disk; // of a scene that need not fit into memory; else null
 
     /// Returns 3 normals per triangle, to be turned by MeshInfo::turn; none if the mesh has none.
     const std::vector<vec3>& normals_of(const MeshInfo& mesh) const {

@@ -38,7 +38,7 @@ bool keeps_floats_in_range(double origin) {
 Chunk::Chunk(dvec3 origin) : origin_(origin), plain_(is_plain()) {}
 
 bool Chunk::is_plain() const {
-    return !transform_ && double_corners_.empty() && keeps_floats_in_range(origin_.x) &&
+    return !transform_ && !stored_ && double_corners_.empty() && keeps_floats_in_range(origin_.x) &&
            keeps_floats_in_range(origin_.y) && keeps_floats_in_range(origin_.z);
 }
 
@@ -71,10 +71,34 @@ Chunk Chunk::borrowing_doubles(dvec3 origin, std::span<const dvec3> corners) {
     return chunk;
 }
 
+Chunk Chunk::stored(dvec3 origin, const StoredCorners& corners, uint32_t size) {
+    Chunk chunk(origin);
+    chunk.stored_ = &corners;
+    chunk.stored_size_ = size;
+    chunk.plain_ = false;
+    return chunk;
+}
+
+Chunk Chunk::read(uint32_t first, uint32_t count) const {
+    assert(stored_ && uint64_t(first) + count <= size());
+    const auto corners = [&](auto corner) {
+        std::vector<decltype(corner)> all(count * size_t(3));
+        stored_->read(first, std::as_writable_bytes(std::span(all)));
+        return all;
+    };
+    Chunk chunk = stored_->has_doubles() ? owning_doubles(origin_, corners(dvec3()))
+                                         : owning(origin_, corners(vec3()));
+    if (transform_)
+        chunk.place(*transform_);
+    return chunk;
+}
+
 Chunk Chunk::instance() const {
     Chunk chunk(origin_);
     chunk.corners_ = corners_;
     chunk.double_corners_ = double_corners_;
+    chunk.stored_ = stored_;
+    chunk.stored_size_ = stored_size_;
     chunk.plain_ = plain_;
     if (transform_)
         chunk.transform_ = std::make_unique<Transform>(*transform_);
@@ -82,6 +106,8 @@ Chunk Chunk::instance() const {
 }
 
 Chunk Chunk::unplaced() const {
+    if (stored_)
+        return stored(origin_, *stored_, stored_size_);
     return double_corners_.empty() ? borrowing(origin_, corners_)
                                    : borrowing_doubles(origin_, double_corners_);
 }
@@ -117,13 +143,25 @@ bool Chunk::has_whole_triangles() const {
     return count % 3 == 0 && count / 3 < kNone;
 }
 
+Triangle Chunk::offsets(uint32_t prim) const {
+    const auto three = [](const auto* c) {
+        return Triangle{dvec3(c[0]), dvec3(c[1]), dvec3(c[2])};
+    };
+    const auto read = [&](auto corners) {
+        stored_->read(prim, std::as_writable_bytes(std::span(corners)));
+        return three(corners.data());
+    };
+    if (stored_)
+        return stored_->has_doubles() ? read(std::array<dvec3, 3>()) : read(std::array<vec3, 3>());
+    const size_t at = size_t(prim) * 3;
+    return corners_.empty() ? three(&double_corners_[at]) : three(&corners_[at]);
+}
+
 Triangle Chunk::placed_triangle(uint32_t prim) const {
-    Triangle triangle;
-    for (size_t i = 0; i < 3; ++i) {
-        const size_t at = size_t(prim) * 3 + i;
-        const dvec3 offset = corners_.empty() ? double_corners_[at] : dvec3(corners_[at]);
+    Triangle triangle = offsets(prim);
+    for (dvec3& offset : triangle) {
         const dvec3 p = transform_ ? (*transform_)(origin_ + offset) : origin_ + offset;
-        triangle[i] = {in_range(p.x), in_range(p.y), in_range(p.z)};
+        offset = {in_range(p.x), in_range(p.y), in_range(p.z)};
     }
     return triangle;
 }

@@ -4,9 +4,11 @@
 
 #include "core/box.h"
 #include "core/build_progress.h"
+#include "core/file/stored_corners.h"
 #include "core/ray.h"
 #include "core/transform.h"
 
+#include <algorithm>
 #include <array>
 #include <cassert>
 #include <cstdint>
@@ -22,13 +24,18 @@ using Triangle = std::array<dvec3, 3>;
 
 /// The triangles of one mesh. Corner i of triangle p lies at origin + corners[3 p + i], added in
 /// double; in an instance, the transform then moves that point. A chunk is move-only: it owns its
-/// corners, or borrows them from a caller who keeps them alive and unchanged.
+/// corners, or borrows them from a caller who keeps them alive and unchanged, or has them read when
+/// a triangle is asked for.
 class Chunk {
 public:
     static Chunk owning(dvec3 origin, std::vector<vec3> corners);
     static Chunk owning_doubles(dvec3 origin, std::vector<dvec3> corners);
     static Chunk borrowing(dvec3 origin, std::span<const vec3> corners);
     static Chunk borrowing_doubles(dvec3 origin, std::span<const dvec3> corners);
+    /// Returns a chunk of `size` triangles whose corners lie on a disk.
+    static Chunk stored(dvec3 origin, const StoredCorners& corners, uint32_t size);
+    /// Returns some triangles of a stored chunk, placed alike, in memory.
+    Chunk read(uint32_t first, uint32_t count) const;
     /// Returns the same triangles once more, placed alike. They borrow this chunk's corners.
     Chunk instance() const;
     /// Returns the same triangles without the transform. They borrow this chunk's corners.
@@ -50,10 +57,12 @@ public:
     Chunk& operator=(Chunk&&) = default;
 
     const dvec3& origin() const { return origin_; }
-    /// Returns 3 x size() offsets of 12 bytes each; none where they are doubles.
+    /// Returns 3 x size() offsets of 12 bytes each; none where they are doubles or stored.
     std::span<const vec3> corners() const { return corners_; }
-    /// Returns 3 x size() offsets of 24 bytes each; none where they are floats.
+    /// Returns 3 x size() offsets of 24 bytes each; none where they are floats or stored.
     std::span<const dvec3> double_corners() const { return double_corners_; }
+    /// Returns null where the corners lie in memory.
+    const StoredCorners* stored_corners() const { return stored_; }
     /// Returns the mask of the mesh (core/sieve.h). 0, as at first: all rays see it.
     uint32_t mask() const { return mask_; }
     void set_mask(uint32_t mask) { mask_ = mask; }
@@ -63,7 +72,9 @@ public:
     bool owns_corners() const { return !owned_.empty() || !owned_doubles_.empty(); }
     /// Returns null where the chunk has no transform.
     const Transform* transform() const { return transform_.get(); }
-    uint32_t size() const { return uint32_t((corners_.size() + double_corners_.size()) / 3); }
+    uint32_t size() const {
+        return uint32_t((corners_.size() + double_corners_.size()) / 3) + stored_size_;
+    }
     uint64_t owned_bytes() const {
         return owned_.capacity() * sizeof(vec3) + owned_doubles_.capacity() * sizeof(dvec3);
     }
@@ -88,13 +99,16 @@ public:
         const size_t at = size_t(prim) * 3;
         if (plain_)
             put_corners<kStride>(corners_.data() + at, origin_, to);
-        else if (!transform_ && corners_.empty())
+        else if (!transform_ && !double_corners_.empty())
             put_corners<kStride>(double_corners_.data() + at, origin_, to);
         else
             put_corners<kStride>(placed_triangle(prim).data(), dvec3(0), to);
     }
-    /// Returns the address that triangle() reads from.
+    /// Returns the address that triangle() reads from; that of stored_corners() where there are
+    /// any.
     const void* address_of(uint32_t prim) const {
+        if (stored_)
+            return stored_;
         return double_corners_.empty()
                    ? static_cast<const void*>(corners_.data() + size_t(prim) * 3)
                    : double_corners_.data() + size_t(prim) * 3;
@@ -105,6 +119,7 @@ private:
     bool is_plain() const;
     bool has_whole_triangles() const;
     Triangle placed_triangle(uint32_t prim) const;
+    Triangle offsets(uint32_t prim) const;
     template <size_t kStride, class Vec>
     static void put_corners(const Vec* corners, const dvec3& origin, double* to) {
         const double x = origin.x, y = origin.y, z = origin.z;
@@ -120,11 +135,31 @@ private:
     std::vector<dvec3> owned_doubles_;
     std::span<const vec3> corners_; // empty where the corners are doubles
     std::span<const dvec3> double_corners_;
+    const StoredCorners* stored_ = nullptr;
+    uint32_t stored_size_ = 0;
     std::unique_ptr<const Transform> transform_;
     bool plain_; // floats without a transform, which the origin keeps in range
     bool moves_ = false;
     uint32_t mask_ = 0;
 };
+
+/// Calls visit(triangle) for the triangles [first, end) of a chunk, in order. Those that are stored
+/// are read many at once.
+template <class Visit>
+void for_each_triangle(const Chunk& chunk, uint32_t first, uint32_t end, Visit&& visit) {
+    constexpr uint32_t kAtOnce = 1024;
+    if (!chunk.stored_corners()) {
+        for (uint32_t prim = first; prim < end; ++prim)
+            visit(chunk.triangle(prim));
+        return;
+    }
+    for (; first < end; first += kAtOnce) {
+        const uint32_t count = std::min(kAtOnce, end - first);
+        const Chunk part = chunk.read(first, count);
+        for (uint32_t i = 0; i < count; ++i)
+            visit(part.triangle(i));
+    }
+}
 
 /// Chunk m holds the triangles (m, 0) … (m, size - 1).
 struct Soup {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <random>
 
@@ -26,6 +27,64 @@ TEST(Chunk, AddsItsOriginInDouble) {
     EXPECT_EQ(t[0], origin);
     EXPECT_EQ(t[1], origin + dvec3(1, 0, 0));
     EXPECT_EQ(t[2], origin + dvec3(0, 1, 0));
+}
+
+/// Corners that are told from other corners when they are asked for.
+template <class Corner>
+class CornersAsked final : public StoredCorners {
+public:
+    explicit CornersAsked(std::span<const Corner> corners) : corners_(corners) {}
+
+    bool has_doubles() const override { return sizeof(Corner) == sizeof(dvec3); }
+    bool read(uint32_t first, std::span<std::byte> to) const override {
+        std::memcpy(to.data(), &corners_[first * size_t(3)], to.size());
+        return true;
+    }
+
+private:
+    std::span<const Corner> corners_;
+};
+
+TEST(Chunk, StoredCornersLieWhereThoseInMemoryDo) {
+    std::mt19937 random(3);
+    const auto coordinate = [&] { return double(random()) * 0x1p-30 - 2; };
+    std::vector<vec3> floats;
+    std::vector<dvec3> doubles;
+    for (int i = 0; i < 12; ++i) {
+        doubles.push_back({coordinate(), coordinate(), coordinate()});
+        floats.push_back(vec3(doubles.back()));
+    }
+    const dvec3 origin(1e5, 0.1, 0);
+    const CornersAsked<vec3> asked_floats{floats};
+    const CornersAsked<dvec3> asked_doubles{doubles};
+    Transform turn = kIdentity;
+    turn.rows[0] = {0, 1, 0, 0.3};
+    turn.rows[1] = {-1, 0, 0, 7};
+    const std::pair<Chunk, Chunk> pairs[] = {
+        {Chunk::borrowing(origin, floats), Chunk::stored(origin, asked_floats, 4)},
+        {Chunk::borrowing_doubles(origin, doubles), Chunk::stored(origin, asked_doubles, 4)}};
+    for (const auto& [there, stored] : pairs) {
+        ASSERT_EQ(stored.size(), there.size());
+        const auto expect_same = [](const Chunk& a, const Chunk& b) {
+            for (uint32_t prim = 0; prim < a.size(); ++prim) {
+                EXPECT_EQ(a.triangle(prim), b.triangle(prim));
+                std::array<double, 9> put{};
+                b.put_triangle<1>(prim, put.data());
+                EXPECT_EQ(put[5], b.triangle(prim)[1].z);
+            }
+        };
+        expect_same(there, stored);
+        Chunk placed = there.instance(), stored_placed = stored.instance();
+        placed.place(turn);
+        stored_placed.place(turn);
+        expect_same(placed, stored_placed);
+        expect_same(there, stored_placed.unplaced());
+        std::vector<Triangle> all;
+        for_each_triangle(stored_placed, 1, 4, [&](const Triangle& t) { all.push_back(t); });
+        EXPECT_EQ(all, (std::vector{placed.triangle(1), placed.triangle(2), placed.triangle(3)}));
+        EXPECT_EQ(stored.mesh_key(), stored_placed.mesh_key());
+    }
+    EXPECT_NE(pairs[0].second.mesh_key(), pairs[1].second.mesh_key());
 }
 
 TEST(Chunk, OwnedCornersSurviveMoves) {

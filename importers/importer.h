@@ -49,6 +49,8 @@ struct ImportOptions {
     std::optional<double> pov_version = {};
     /// Keeps texture coordinates in MeshInfo::uv. Only .ply has them so far.
     bool texture_coordinates = false;
+    /// Leaves the corners of an .ovc file on the disk, and what was built of it (Scene::on_disk).
+    bool on_disk = false;
     /// Receives every file that is read or looked for in vain; may be null.
     FilesRead* files = nullptr;
     /// Not null: the triangles go to its sink, and the scene that comes back has empty meshes. For

@@ -3,6 +3,7 @@
 // texture coordinates and the levels.
 #include "importers/scene_file.h"
 
+#include "core/function_ref.h"
 #include "importers/file/output_file.h"
 #include "importers/readers.h"
 #include "importers/scene_bytes.h"
@@ -64,17 +65,21 @@ std::vector<MeshExtent> extents_of(const Scene& scene) {
     return extents;
 }
 
-/// Returns a mesh's chunk; nothing if the extent cannot be true.
-std::optional<Chunk> chunk_of(const MeshExtent& extent, std::span<const vec3> corners,
-                              const Soup& before) {
-    if (extent.corners > corners.size() || extent.corners % 3 ||
-        extent.corners / 3 > kMaxTriangles || !is_finite(extent.origin))
+/// Returns the chunk of a mesh with corners of its own, which begin behind so many.
+using OwnChunk = FunctionRef<Chunk(const MeshExtent& extent, uint64_t first_corner)>;
+
+/// Returns a mesh's chunk; nothing if the extent cannot be true. first, end: the corners that are
+/// left.
+std::optional<Chunk> chunk_of(const MeshExtent& extent, uint64_t first, uint64_t end,
+                              const OwnChunk& own_chunk, const Soup& before) {
+    if (extent.corners > end - first || extent.corners % 3 || extent.corners / 3 > kMaxTriangles ||
+        !is_finite(extent.origin))
         return std::nullopt;
     const bool has_own = extent.corners_from == MeshExtent::kOwnCorners;
     if (!has_own && (extent.corners > 0 || extent.corners_from >= before.chunks.size()))
         return std::nullopt;
-    Chunk chunk = has_own ? Chunk::borrowing(extent.origin, corners.first(extent.corners))
-                          : before.chunks[extent.corners_from].unplaced();
+    Chunk chunk =
+        has_own ? own_chunk(extent, first) : before.chunks[extent.corners_from].unplaced();
     if (extent.is_placed == 0)
         return chunk;
     for (const auto& row : extent.transform.rows)
@@ -95,23 +100,24 @@ bool take_first(std::span<const T>& items, uint64_t count, std::vector<T>& to) {
     return true;
 }
 
-/// Gives the meshes their corners, which stay where they are mapped, their normals and their
-/// texture coordinates. Returns false if the extents do not use them up exactly.
-bool share_out(std::span<const MeshExtent> extents, std::span<const vec3> corners,
+/// Gives the meshes their corners, which stay where they are, their normals and their texture
+/// coordinates. Returns false if the extents do not use them up exactly.
+bool share_out(std::span<const MeshExtent> extents, uint64_t corners, const OwnChunk& own_chunk,
                std::span<const vec3> normals, std::span<const vec2> uv, Scene& scene) {
+    uint64_t first = 0;
     if (extents.size() != scene.meshes.size())
         return false;
     for (size_t m = 0; m < extents.size(); ++m) {
         const MeshExtent& extent = extents[m];
-        std::optional<Chunk> chunk = chunk_of(extent, corners, scene.soup);
+        std::optional<Chunk> chunk = chunk_of(extent, first, corners, own_chunk, scene.soup);
         if (!chunk || !take_first(normals, extent.normals, scene.meshes[m].normals) ||
             !take_first(uv, extent.uv, scene.meshes[m].uv))
             return false;
         chunk->set_mask(extent.mask);
         scene.soup.chunks.push_back(std::move(*chunk));
-        corners = corners.subspan(extent.corners);
+        first += extent.corners;
     }
-    return corners.empty() && normals.empty() && uv.empty();
+    return first == corners && normals.empty() && uv.empty();
 }
 
 /// Checks what the host relies on.
@@ -137,30 +143,59 @@ bool is_sound(const Scene& scene) {
             scene.camera->window->bend <= Bend::Cylinder4);
 }
 
-Result<SceneFile> read(const Archive& archive) {
+/// Reads everything but corners and levels. corners: how many there are.
+template <class AnyArchive>
+Result<SceneFile> read(const AnyArchive& archive, uint64_t corners, const OwnChunk& own_chunk) {
     const Error unsound{"is damaged: what it holds is no scene"};
-    const auto fields = archive.part("fields");
+    const auto fields = archive.template items<std::byte>("fields");
     if (!fields)
         return fields.error();
-    const auto extents = archive.items<MeshExtent>("extents");
+    const auto extents = archive.template items<MeshExtent>("extents");
     if (!extents)
         return extents.error();
-    const auto corners = archive.items<vec3>("corners");
-    if (!corners)
-        return corners.error();
-    const auto normals = archive.items<vec3>("normals");
+    const auto normals = archive.template items<vec3>("normals");
     if (!normals)
         return normals.error();
-    const auto uv = archive.items<vec2>("uv");
+    const auto uv = archive.template items<vec2>("uv");
     if (!uv)
         return uv.error();
     SceneFile file;
     ByteReader reader(*fields);
     reader(file.scene, file.scene.meshes, file.from.request, file.from.files, file.from.warnings);
-    if (!reader.done() || !share_out(*extents, *corners, *normals, *uv, file.scene) ||
+    if (!reader.done() || !share_out(*extents, corners, own_chunk, *normals, *uv, file.scene) ||
         !is_sound(file.scene))
         return unsound;
-    file.scene.saved = archive.unchecked("levels");
+    return file;
+}
+
+/// Leaves corners and levels where they are mapped.
+Result<SceneFile> read(const Archive& archive) {
+    const auto corners = archive.items<vec3>("corners");
+    if (!corners)
+        return corners.error();
+    const auto own_chunk = [&](const MeshExtent& extent, uint64_t first) {
+        return Chunk::borrowing(extent.origin, corners->subspan(first, extent.corners));
+    };
+    Result<SceneFile> file = read<Archive>(archive, corners->size(), own_chunk);
+    if (file)
+        file->scene.saved = archive.unchecked("levels");
+    return file;
+}
+
+/// Leaves corners and levels on the disk.
+Result<SceneFile> read(std::unique_ptr<SceneOnDisk> disk, const StoredArchive& archive) {
+    const ArchivePart corners = archive.place("corners"), levels = archive.place("levels");
+    disk->corners_checksum = corners.checksum;
+    disk->levels_offset = levels.offset;
+    disk->levels_bytes = levels.bytes;
+    const auto own_chunk = [&](const MeshExtent& extent, uint64_t first) {
+        disk->meshes.push_back(
+            std::make_unique<FileCorners>(disk->file, corners.offset + first * sizeof(vec3)));
+        return Chunk::stored(extent.origin, *disk->meshes.back(), uint32_t(extent.corners / 3));
+    };
+    Result<SceneFile> file = read<StoredArchive>(archive, corners.bytes / sizeof(vec3), own_chunk);
+    if (file)
+        file->scene.on_disk = std::move(disk);
     return file;
 }
 
@@ -257,6 +292,8 @@ uint64_t checksum_of(const Scene& scene) {
     for (size_t m = 0; m < scene.meshes.size(); ++m) {
         if (extents[m].corners > 0)
             sum.add(bytes_of(scene.soup.chunks[m].corners()));
+        if (scene.on_disk)
+            sum.add_value(scene.on_disk->corners_checksum);
         sum.add(bytes_of(std::span<const vec3>(scene.meshes[m].normals)));
         sum.add(bytes_of(std::span<const vec2>(scene.meshes[m].uv)));
     }
@@ -280,10 +317,30 @@ Result<SceneFile> read_scene_file(const std::filesystem::path& path) {
     return file;
 }
 
+Result<SceneFile> open_scene_file(const std::filesystem::path& path) {
+    Result<DiskFile> opened = DiskFile::open(path);
+    if (!opened)
+        return opened.error();
+    const auto failed = [&](const Error& error) {
+        return Error{fmt::format("{}: the file {}", path.string(), error.message)};
+    };
+    auto disk = std::make_unique<SceneOnDisk>(std::move(*opened));
+    const auto read_bytes = [&file = disk->file](uint64_t offset, std::span<std::byte> to) {
+        return file.read(offset, to);
+    };
+    const auto archive = StoredArchive::open(read_bytes, disk->file.bytes(), kKind, kVersion);
+    if (!archive)
+        return failed(archive.error());
+    if (archive->place("levels").bytes == 0)
+        return failed({"holds no levels: overcast convert makes one that does"});
+    Result<SceneFile> file = read(std::move(disk), *archive);
+    return file ? std::move(file) : failed(file.error());
+}
+
 /// Repeats the warnings of the time when the scene was made.
 Result<Scene> read_ovc(const std::filesystem::path& path, const ImportOptions& options) {
     note(options.files, path);
-    Result<SceneFile> file = read_scene_file(path);
+    Result<SceneFile> file = options.on_disk ? open_scene_file(path) : read_scene_file(path);
     if (!file)
         return file.error();
     for (const std::string& warning : file->from.warnings)

@@ -51,4 +51,8 @@ uint64_t checksum_of(const Scene& scene);
 /// begins with the path.
 Result<SceneFile> read_scene_file(const std::filesystem::path& path);
 
+/// Does the same, but leaves corners and levels on the disk, unchecked (Scene::on_disk). Error:
+/// besides, the file holds no levels.
+Result<SceneFile> open_scene_file(const std::filesystem::path& path);
+
 } // namespace ovc

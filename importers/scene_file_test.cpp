@@ -89,6 +89,55 @@ TEST(SceneFile, IsTheSameOfAStore) {
     expect_same(held, file->scene);
 }
 
+/// Corners and levels stay on the disk, and are read from there.
+TEST(SceneFile, IsTheSameSceneOnADisk) {
+    const TestFolder folder;
+    Scene held;
+    held.name = "three";
+    held.materials.emplace_back();
+    const std::vector<vec3> corners{{0, 0, 0}, {1, 0, 0}, {0, 1, 0},
+                                    {0, 0, 1}, {1, 0, 1}, {0, 1, 1}};
+    const std::vector<vec3> normals(6, vec3(0, 0, 1));
+    held.add_mesh("a", 0, Chunk::owning(dvec3(1, 2, 3), corners), normals);
+    held.add_mesh("b", 0, held.soup.chunks[0].instance());
+    Transform moved = kIdentity;
+    moved.rows[1][3] = 5;
+    held.soup.chunks[1].place(moved);
+    held.add_mesh("c", 0, Chunk::owning(dvec3(4), {corners.begin() + 1, corners.begin() + 4}));
+    const std::string levels = "what was built";
+    ASSERT_TRUE(write_scene_file(
+        held, {},
+        [&](const ByteSink& sink) {
+            sink(bytes_of(std::span<const char>(levels)));
+            return Result<Done>(Done{});
+        },
+        folder / "a.ovc"));
+    const auto file = open_scene_file(folder / "a.ovc");
+    ASSERT_TRUE(file) << file.error().message;
+    const Scene& scene = file->scene;
+    ASSERT_EQ(scene.soup.chunks.size(), 3u);
+    for (size_t m = 0; m < 3; ++m) {
+        const Chunk &a = held.soup.chunks[m], &b = scene.soup.chunks[m];
+        EXPECT_EQ(scene.meshes[m].normals, held.meshes[m].normals);
+        EXPECT_TRUE(b.stored_corners() && b.corners().empty());
+        ASSERT_EQ(a.size(), b.size());
+        for (uint32_t prim = 0; prim < a.size(); ++prim)
+            EXPECT_EQ(a.triangle(prim), b.triangle(prim));
+    }
+    EXPECT_EQ(scene.soup.chunks[0].mesh_key(), scene.soup.chunks[1].mesh_key());
+    ASSERT_TRUE(scene.on_disk);
+    std::string read(scene.on_disk->levels_bytes, ' ');
+    EXPECT_TRUE(scene.on_disk->file.read(scene.on_disk->levels_offset,
+                                         std::as_writable_bytes(std::span(read))));
+    EXPECT_EQ(read, levels);
+    EXPECT_FALSE(scene.on_disk->file.error());
+    std::filesystem::resize_file(folder / "a.ovc", 200);
+    scene.soup.triangle({2, 0});
+    ASSERT_TRUE(scene.on_disk->file.error());
+    EXPECT_EQ(scene.on_disk->file.error()->message,
+              (folder / "a.ovc").string() + ": cannot be read: bytes are missing");
+}
+
 /// A field that each_field() forgets would be equal in the test above.
 TEST(SceneFile, EveryFieldOfAStructIsNamed) {
     const auto size = [](const auto& value) {

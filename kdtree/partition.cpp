@@ -334,7 +334,7 @@ std::vector<Cell> cells_of(std::span<const KdNode> nodes, const Box& bounds, dou
 uint64_t Level1::reference_count() const {
     uint64_t count = 0;
     for (const Leaf& leaf : leaves)
-        count += leaf.list().size();
+        count += leaf.list().size() + leaf.stored;
     return count;
 }
 

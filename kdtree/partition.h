@@ -38,6 +38,7 @@ struct Leaf {
     double reach = 0;                  // the largest extent of all of them, in the cell or not
     /// Those of a leaf that was restored, which the owner keeps alive and unchanged.
     std::span<const TriangleId> borrowed{};
+    uint64_t stored = 0; // the number of those of a leaf whose list stays on a disk
 
     std::span<const TriangleId> list() const { return borrowed.empty() ? triangles : borrowed; }
 };

@@ -27,7 +27,7 @@ struct RayPosition {
 /// Returns whether double precision and the padding of leaves suffice to walk level 1 plane by
 /// plane along this ray. They do not where the origin is so far away, or the direction so uneven,
 /// that the ray's place in a leaf is lost to rounding. Such a ray must go to the exact fallback
-/// (plugin/two_level/exact_fallback.h).
+/// (plugin/fallback/exact_fallback.h).
 bool can_walk(const Level1& level1, const PreparedRay& p);
 
 /// Returns the next leaf along the ray, and moves `position` past it; leaf == kNone when there is

@@ -38,7 +38,8 @@ typedef enum ovc_result {
     OVC_ERROR_OUT_OF_MEMORY = 5,
     OVC_ERROR_DEVICE_LOST = 6,
     OVC_ERROR_INTERNAL = 7,
-    OVC_ERROR_CANCELLED = 8 /* a caller's function, cancel, release or destroy_scene asked for it */
+    OVC_ERROR_CANCELLED = 8, /* a caller's function, cancel, release or destroy_scene asked for it */
+    OVC_ERROR_UNREADABLE = 9 /* what read_saved or read_corners gives is damaged, or they failed; the scene stays usable */
 } ovc_result;
 
 #define OVC_NONE 0xffffffffu
@@ -163,6 +164,13 @@ typedef enum ovc_level1_build {
 /* Takes the next `size` bytes that are saved. Returns 0 to go on, anything else to stop. */
 typedef int (*ovc_write_function)(void* user, const void* bytes, size_t size);
 
+/* Writes the `size` bytes of a file from `offset` on into `bytes`. Returns 0 where it could. It is called from several threads at
+ * once, must not throw and may call last_error and nothing else. */
+typedef int (*ovc_read_function)(void* user, uint64_t offset, void* bytes, size_t size);
+
+/* The same for the corners of `count` triangles of a mesh, from `first` on: three offsets from its origin each. */
+typedef int (*ovc_read_corners_function)(void* user, uint64_t first, uint64_t count, void* corners);
+
 /* Takes how far a commit, a plan or a call with rays is. done: from 0 to 1, never less than before;
  * stage: names the work under way, valid during the call only. It is called fifty times a second at
  * most, from any thread, but never from two at once. It must return soon and call nothing on the
@@ -191,6 +199,15 @@ typedef struct ovc_scene_config {
      * builds, and the device's log says why. Answers are the same bits either way. */
     const void* saved;
     uint64_t saved_bytes;
+    /* Experimental. Not 0: the scene need not fit into host memory, and pages, corners and tables
+     * together take so many bytes of it at most. Commit then opens what was saved, saved_bytes in
+     * all, by read_saved, and `saved` is NULL; pages and corners are read as rays need them. All
+     * meshes have read_corners, their corners are those that the levels were saved of, and nothing
+     * changes after commit. OVC_ERROR_OUT_OF_BUDGET: too few, and the sentence names the smallest
+     * number that works. */
+    uint64_t host_memory_bytes;
+    ovc_read_function read_saved;
+    void* read_user;
 } ovc_scene_config;
 
 typedef enum ovc_mesh_flags {
@@ -216,6 +233,13 @@ typedef struct ovc_mesh {
     const double* transform;  /* 12 finite numbers, or NULL: as in ovc_instance; applied after origin is added */
     uint32_t mask;            /* which rays see the mesh (ovc_query.masks). 0: all */
     uint32_t reserved1;       /* 0 */
+    /* Experimental: instead of positions, in a scene with host_memory_bytes. It reads corners of the
+     * triangle_count triangles, of floats or of doubles, until the scene is destroyed. Meshes with
+     * the same function and user show the same corners, and share pages as instances do. */
+    ovc_read_corners_function read_corners;
+    void* read_user;
+    uint32_t reads_doubles;   /* 0: 36 bytes a triangle; 1: 72 */
+    uint32_t reserved2;       /* 0 */
 } ovc_mesh;
 
 /* A mesh placed once more, somewhere else. It has a number of its own, which its hits name, and the
@@ -399,6 +423,20 @@ typedef struct ovc_statistics {
     uint64_t pages_refitted;
     /* + pages that they built, anew or for meshes that were added */
     uint64_t pages_rebuilt;
+    /* ovc_scene_config.host_memory_bytes, as the next ones 0 where that is not set */
+    uint64_t host_budget_bytes;
+    /* of it, the most that pages, corners and tables took together */
+    uint64_t host_budget_peak_bytes;
+    /* + calls of read_saved and read_corners */
+    uint64_t disk_reads;
+    /* + bytes that they read */
+    uint64_t disk_bytes;
+    /* + pages and blocks of corners that were in host memory when they were needed */
+    uint64_t disk_hits;
+    /* + those that somebody had to wait for */
+    uint64_t disk_misses;
+    /* + pages that were read ahead of need */
+    uint64_t disk_ahead;
 } ovc_statistics;
 
 /* The pages that rays went through since this was asked last, or since the commit; experimental. */

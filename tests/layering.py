@@ -30,12 +30,15 @@ PARTS = {
     "gpu/page": {"gpu/bvh", "gpu/frame"},
     "gpu/trace": {"gpu/budget", "gpu/frame", "gpu/gl", "gpu/page"},
     "plugin/structure": {"plugin"},
-    "plugin/abi": {"plugin", "plugin/structure"},
-    "plugin/build": {"plugin", "plugin/plan"},
+    "plugin/abi": {"plugin", "plugin/structure", "plugin/leaf_store"},
+    "plugin/leaf_store": set(),
+    "plugin/build": {"plugin", "plugin/plan", "plugin/leaf_store"},
     "plugin/plan": {"plugin", "plugin/build"},
-    "plugin/out_of_core": {"plugin", "plugin/structure", "plugin/build", "plugin/plan"},
+    "plugin/fallback": {"plugin", "plugin/build", "plugin/leaf_store"},
+    "plugin/out_of_core": {"plugin", "plugin/structure", "plugin/build", "plugin/plan",
+                           "plugin/leaf_store"},
     "plugin/two_level": {"plugin", "plugin/structure", "plugin/build", "plugin/plan",
-                         "plugin/out_of_core"},
+                         "plugin/out_of_core", "plugin/leaf_store", "plugin/fallback"},
 }
 
 # Header pattern -> the files that may include such headers. Tests may include any.

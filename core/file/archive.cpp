@@ -105,47 +105,84 @@ bool ArchiveWriter::finish() {
     return wanted_;
 }
 
+namespace {
+
+/// The bytes of an archive that are looked at first. They claim where its table is.
+struct Frame {
+    Header header;
+    End end;
+    uint64_t table_end; // where `end` begins
+
+    uint64_t table_bytes() const { return table_end - end.table; }
+};
+
+const Error kTooShort{"is too short to be whole"};
+
+Result<Done> check(const Frame& frame, std::string_view kind, uint32_t version) {
+    if (frame.header.kind != name_of(kind))
+        return Error{"does not begin as " + std::string(kind) + " does"};
+    if (frame.header.byte_order != kByteOrder)
+        return Error{"is from a machine with another order of bytes"};
+    if (frame.header.version != version)
+        return Error{"is of version " + std::to_string(frame.header.version) + ", expected " +
+                     std::to_string(version)};
+    const End& end = frame.end;
+    if (end.mark != name_of(kEndMark))
+        return Error{"is cut off"};
+    if (end.table > frame.table_end || end.table % kPartAlignment ||
+        frame.table_bytes() / sizeof(ArchivePart) != end.parts ||
+        frame.table_bytes() % sizeof(ArchivePart))
+        return Error{"is damaged: its table is out of place"};
+    return Done{};
+}
+
+Result<Done> check_table(const Frame& frame, std::span<const ArchivePart> parts) {
+    Checksum sum;
+    sum.add(bytes_of_one(frame.header));
+    sum.add(bytes_of(parts));
+    if (sum.value() != frame.end.checksum)
+        return Error{"is damaged: the checksum of its table is wrong"};
+    for (const ArchivePart& part : parts)
+        if (part.offset % kPartAlignment || part.offset > frame.end.table ||
+            part.bytes > frame.end.table - part.offset)
+            return Error{"is damaged: a part of it is out of place"};
+    return Done{};
+}
+
+const ArchivePart* find_part(std::span<const ArchivePart> parts, std::string_view name) {
+    const auto found = std::ranges::find(parts, name_of(name), &ArchivePart::name);
+    return found == parts.end() ? nullptr : &*found;
+}
+
+Error no_part(std::string_view name) {
+    return {"has no part '" + std::string(name) + "'"};
+}
+
+Error wrong_checksum(std::string_view name) {
+    return {"is damaged: the checksum of its part '" + std::string(name) + "' is wrong"};
+}
+
+} // namespace
+
 Result<Archive> Archive::open(Bytes bytes, std::string_view kind, uint32_t version) {
     assert(reinterpret_cast<uintptr_t>(bytes.data()) % kPartAlignment == 0);
     if (bytes.size() < sizeof(Header) + sizeof(End))
-        return Error{"is too short to be whole"};
-    const auto header = read_at<Header>(bytes, 0);
-    if (header.kind != name_of(kind))
-        return Error{"does not begin as " + std::string(kind) + " does"};
-    if (header.byte_order != kByteOrder)
-        return Error{"is from a machine with another order of bytes"};
-    if (header.version != version)
-        return Error{"is of version " + std::to_string(header.version) + ", expected " +
-                     std::to_string(version)};
-    const auto end = read_at<End>(bytes, bytes.size() - sizeof(End));
+        return kTooShort;
     const uint64_t table_end = bytes.size() - sizeof(End);
-    if (end.mark != name_of(kEndMark))
-        return Error{"is cut off"};
-    if (end.table > table_end || end.table % kPartAlignment ||
-        (table_end - end.table) / sizeof(ArchivePart) != end.parts ||
-        (table_end - end.table) % sizeof(ArchivePart))
-        return Error{"is damaged: its table is out of place"};
-    const Bytes table = bytes.subspan(end.table, table_end - end.table);
-    Checksum frame;
-    frame.add(bytes.first(sizeof(Header)));
-    frame.add(table);
-    if (frame.value() != end.checksum)
-        return Error{"is damaged: the checksum of its table is wrong"};
+    const Frame frame{read_at<Header>(bytes, 0), read_at<End>(bytes, table_end), table_end};
+    if (const Result<Done> fine = check(frame, kind, version); !fine)
+        return fine.error();
     Archive archive;
-    archive.bytes_ = bytes.first(end.table);
-    archive.parts_ = {reinterpret_cast<const ArchivePart*>(table.data()), size_t(end.parts)};
-    for (const ArchivePart& part : archive.parts_)
-        if (part.offset % kPartAlignment || part.offset > end.table ||
-            part.bytes > end.table - part.offset)
-            return Error{"is damaged: a part of it is out of place"};
+    archive.bytes_ = bytes.first(frame.end.table);
+    archive.parts_ = {reinterpret_cast<const ArchivePart*>(bytes.data() + frame.end.table),
+                      size_t(frame.end.parts)};
+    if (const Result<Done> fine = check_table(frame, archive.parts_); !fine)
+        return fine.error();
     return archive;
 }
 
 const ArchivePart* Archive::find(std::string_view name) const {
-    const auto found = std::find_if(parts_.begin(), parts_.end(), [&](const ArchivePart& part) {
-        return part.name == name_of(name);
-    });
-    return found == parts_.end() ? nullptr : &*found;
+    return find_part(parts_, name);
 }
 
 Bytes Archive::unchecked(std::string_view name) const {
@@ -156,15 +193,51 @@ Bytes Archive::unchecked(std::string_view name) const {
 Result<Bytes> Archive::part(std::string_view name) const {
     const ArchivePart* found = find(name);
     if (!found)
-        return Error{"has no part '" + std::string(name) + "'"};
+        return no_part(name);
     const Bytes bytes = unchecked(name);
     if (checksum_of(bytes) != found->checksum)
-        return Error{"is damaged: the checksum of its part '" + std::string(name) + "' is wrong"};
+        return wrong_checksum(name);
     return bytes;
 }
 
 Error Archive::wrong_size(std::string_view name) {
     return {"is damaged: its part '" + std::string(name) + "' has the wrong size"};
+}
+
+Result<StoredArchive> StoredArchive::open(ReadBytes read, uint64_t bytes, std::string_view kind,
+                                          uint32_t version) {
+    constexpr uint64_t kMaxParts = 1000; // no more memory than this for an end that is damaged
+    const Error unreadable{"cannot be read"};
+    if (bytes < sizeof(Header) + sizeof(End))
+        return kTooShort;
+    Frame frame{{}, {}, bytes - sizeof(End)};
+    if (!read(0, std::as_writable_bytes(std::span(&frame.header, 1))) ||
+        !read(frame.table_end, std::as_writable_bytes(std::span(&frame.end, 1))))
+        return unreadable;
+    if (const Result<Done> fine = check(frame, kind, version); !fine)
+        return fine.error();
+    std::vector<ArchivePart> parts(std::min(frame.end.parts, kMaxParts));
+    if (!read(frame.end.table, std::as_writable_bytes(std::span(parts))))
+        return unreadable;
+    if (const Result<Done> fine = check_table(frame, parts); !fine)
+        return fine.error();
+    return StoredArchive(std::move(read), std::move(parts));
+}
+
+ArchivePart StoredArchive::place(std::string_view name) const {
+    const ArchivePart* found = find_part(parts_, name);
+    return found ? *found : ArchivePart{name_of(name)};
+}
+
+Result<Done> StoredArchive::read_checked(const ArchivePart& part, std::span<std::byte> to) const {
+    const std::string name(part.name.data());
+    if (!find_part(parts_, name))
+        return no_part(name);
+    if (!read_(part.offset, to))
+        return Error{"cannot be read: its part '" + name + "'"};
+    if (checksum_of(to) != part.checksum)
+        return wrong_checksum(name);
+    return Done{};
 }
 
 } // namespace ovc

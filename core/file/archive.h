@@ -14,17 +14,24 @@
 #include "core/result.h"
 
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace ovc {
 
 using Bytes = std::span<const std::byte>;
+
+/// Fills `to` with the bytes from an offset on. Returns false where they cannot be read. Any number
+/// of threads may call it.
+using ReadBytes = std::function<bool(uint64_t offset, std::span<std::byte> to)>;
 
 /// Takes the next bytes of an archive that is written. Returns false where it wants no more.
 using ByteSink = std::function<bool(Bytes)>;
@@ -103,11 +110,48 @@ public:
     }
 
 private:
+    friend class StoredArchive;
     static Error wrong_size(std::string_view name);
     const ArchivePart* find(std::string_view name) const;
 
     Bytes bytes_;
     std::span<const ArchivePart> parts_;
+};
+
+/// An archive that is not in memory: each part is read when it is asked for.
+class StoredArchive {
+public:
+    /// As Archive::open(), of so many bytes that `read` gives. Error: besides, they cannot be read.
+    static Result<StoredArchive> open(ReadBytes read, uint64_t bytes, std::string_view kind,
+                                      uint32_t version);
+
+    /// Returns where a part lies; bytes are 0 where there is none of this name.
+    ArchivePart place(std::string_view name) const;
+    const ReadBytes& read() const { return read_; }
+
+    /// Returns a part of any number of T, or of `count`. Error: as Archive::items(), or the bytes
+    /// cannot be read.
+    template <class T>
+    Result<std::vector<T>> items(std::string_view name, uint64_t count = ~uint64_t(0)) const {
+        static_assert(std::is_trivially_copyable_v<T>);
+        const ArchivePart found = place(name);
+        const uint64_t size = found.bytes / sizeof(T);
+        if (found.bytes % sizeof(T) || (count != ~uint64_t(0) && size != count))
+            return Archive::wrong_size(name);
+        std::vector<T> all(size, std::bit_cast<T>(std::array<std::byte, sizeof(T)>{}));
+        if (const Result<Done> done = read_checked(found, std::as_writable_bytes(std::span(all)));
+            !done)
+            return done.error();
+        return all;
+    }
+
+private:
+    StoredArchive(ReadBytes read, std::vector<ArchivePart> parts)
+        : read_(std::move(read)), parts_(std::move(parts)) {}
+    Result<Done> read_checked(const ArchivePart& part, std::span<std::byte> to) const;
+
+    ReadBytes read_;
+    std::vector<ArchivePart> parts_;
 };
 
 } // namespace ovc

@@ -55,10 +55,59 @@ TEST(Archive, OthersAreRefusedWithAReason) {
     EXPECT_EQ(Archive::open({}, "example", 7).error().message, "is too short to be whole");
 }
 
-/// Returns whether all parts are found to be as they were written.
+ReadBytes reading(Bytes bytes) {
+    return [bytes](uint64_t offset, std::span<std::byte> to) {
+        if (offset > bytes.size() || to.size() > bytes.size() - offset)
+            return false;
+        std::copy_n(bytes.begin() + ptrdiff_t(offset), to.size(), to.begin());
+        return true;
+    };
+}
+
+/// Returns whether all parts are found to be as they were written. It does not matter whether the
+/// archive lies in memory.
 bool is_whole(Bytes bytes) {
     const auto archive = Archive::open(bytes, "example", 7);
-    return archive && archive->part("numbers") && archive->part("nothing") && archive->part("text");
+    const bool whole =
+        archive && archive->part("numbers") && archive->part("nothing") && archive->part("text");
+    const auto stored = StoredArchive::open(reading(bytes), bytes.size(), "example", 7);
+    EXPECT_EQ(whole, stored && stored->items<double>("numbers") && stored->items<char>("nothing") &&
+                         stored->items<char>("text"));
+    if (!archive || !stored) {
+        EXPECT_EQ(archive.error().message, stored.error().message);
+    }
+    return whole;
+}
+
+TEST(StoredArchive, GivesTheSameParts) {
+    const ArchiveMemory memory = example();
+    const auto archive = StoredArchive::open(reading(memory.bytes()), memory.size(), "example", 7);
+    ASSERT_TRUE(archive) << archive.error().message;
+    const auto numbers = archive->items<double>("numbers");
+    ASSERT_TRUE(numbers);
+    EXPECT_EQ(*numbers, kNumbers);
+    EXPECT_EQ(archive->items<double>("numbers", 2).error().message,
+              "is damaged: its part 'numbers' has the wrong size");
+    EXPECT_EQ(archive->items<char>("something").error().message, "has no part 'something'");
+    EXPECT_EQ(archive->place("text").bytes, kText.size());
+    EXPECT_EQ(archive->place("something").bytes, 0u);
+}
+
+TEST(StoredArchive, EveryReadThatFailsIsSaid) {
+    const ArchiveMemory memory = example();
+    for (int failing = 0; failing < 4; ++failing) {
+        int reads = 0;
+        const ReadBytes whole = reading(memory.bytes());
+        const ReadBytes read = [&](uint64_t offset, std::span<std::byte> to) {
+            return reads++ != failing && whole(offset, to);
+        };
+        const auto archive = StoredArchive::open(read, memory.size(), "example", 7);
+        if (failing < 3)
+            EXPECT_EQ(archive.error().message, "cannot be read");
+        else
+            EXPECT_EQ(archive->items<double>("numbers").error().message,
+                      "cannot be read: its part 'numbers'");
+    }
 }
 
 TEST(Archive, EveryChangedBitIsNoticedButInThePaddingBetweenParts) {

@@ -16,15 +16,21 @@
 
 namespace ovc {
 
+/// The texels of a page's header and root, by which a tree over pages is built.
+inline constexpr size_t kHeadTexels = (OVC_ROOT_UNIT + 1) * OVC_UNIT_TEXELS;
+
 struct Page {
     std::vector<uvec4> texels;         // of a page that was built; empty if they are borrowed
     std::span<const uvec4> borrowed{}; // the owner keeps them alive and unchanged
     uint32_t depth = 0;                // nodes on the longest way down
     float built_cost = 0;              // of a ray before the first refit (refit.h); 0: none yet
+    /// Of a page that lies on a disk: its bytes, and its number there. Its view() is the head.
+    uint64_t stored_bytes = 0;
+    uint32_t stored_number = 0;
 
     std::span<const uvec4> view() const { return borrowed.empty() ? texels : borrowed; }
-    uint64_t units() const { return view().size() / OVC_UNIT_TEXELS; }
-    uint64_t bytes() const { return view().size_bytes(); }
+    uint64_t units() const { return bytes() / OVC_UNIT_BYTES; }
+    uint64_t bytes() const { return stored_bytes ? stored_bytes : view().size_bytes(); }
     bool has_loose_pairs() const {
         return !view().empty() && view()[OVC_LOOSE_TEXEL].x == OVC_HAS_LOOSE_PAIRS;
     }

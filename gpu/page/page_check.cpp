@@ -10,6 +10,31 @@
 namespace ovc {
 namespace {
 
+/// Returns whether the grid is plausible in a leaf's frame, where the leaf is about as large as 1.
+bool has_sound_grid(std::span<const uvec4> head) {
+    constexpr float kFarthest = 16;
+    const GridHeader grid = header_of(head);
+    for (int axis = 0; axis < 3; ++axis)
+        if (!(std::abs(grid.middle[axis]) <= kFarthest) || !(grid.cell[axis] > 0) ||
+            !(grid.cell[axis] <= kFarthest / kGridLast))
+            return false;
+    return true;
+}
+
+bool is_missing(std::span<const uvec4> node, uint32_t child) {
+    for (uint32_t axis = 0; axis < 3; ++axis)
+        if (range_of(node[axis], child) != GridRange())
+            return false;
+    return true;
+}
+
+bool has_box(std::span<const uvec4> node, uint32_t child) {
+    for (uint32_t axis = 0; axis < 3; ++axis)
+        if (range_of(node[axis], child).empty())
+            return false;
+    return true;
+}
+
 class PageChecker {
 public:
     PageChecker(const Page& page, uint32_t triangle_count, uint32_t first_number)
@@ -21,10 +46,8 @@ public:
     bool check() {
         const uint64_t units = page_.units();
         if (texels_.size() % OVC_UNIT_TEXELS || units <= OVC_ROOT_UNIT ||
-            units >= OVC_MAX_PAGE_UNITS || page_.depth > uint32_t(kMaxBvhDepth))
-            return false;
-        if (texels_[2] != uvec4(OVC_ROOT_UNIT, 0xffffffffu, 0, 0) || !has_sound_grid() ||
-            is_missing(OVC_ROOT_UNIT, 0))
+            page_.depth > uint32_t(kMaxBvhDepth) ||
+            !is_sound_head(texels_.first(kHeadTexels), units))
             return false;
         seen_.assign(units, 0);
         if (!reach(OVC_ROOT_UNIT, 1))
@@ -44,20 +67,10 @@ private:
         uint32_t depth;
     };
 
-    /// Whether the grid is plausible in a leaf's frame, where the leaf is about as large as 1.
-    bool has_sound_grid() const {
-        constexpr float kFarthest = 16;
-        const GridHeader grid = header_of(texels_);
-        for (int axis = 0; axis < 3; ++axis)
-            if (!(std::abs(grid.middle[axis]) <= kFarthest) || !(grid.cell[axis] > 0) ||
-                !(grid.cell[axis] <= kFarthest / kGridLast))
-                return false;
-        return true;
+    std::span<const uvec4> unit(uint32_t number) const {
+        return texels_.subspan(size_t(number) * OVC_UNIT_TEXELS, OVC_UNIT_TEXELS);
     }
-
-    const uvec4& texel(uint32_t unit, uint32_t i) const {
-        return texels_[size_t(unit) * OVC_UNIT_TEXELS + i];
-    }
+    const uvec4& texel(uint32_t number, uint32_t i) const { return unit(number)[i]; }
 
     /// Marks a unit for a visit. Returns false if a walk would leave the page, or come to the same
     /// unit on two ways.
@@ -81,28 +94,14 @@ private:
             return false;
         const uint64_t base = last.x;
         for (uint32_t child = 0; child < 4; ++child)
-            if (!is_missing(at.unit, child) &&
-                (!has_box(at.unit, child) || !reach(base + child, at.depth + 1)))
+            if (!is_missing(unit(at.unit), child) &&
+                (!has_box(unit(at.unit), child) || !reach(base + child, at.depth + 1)))
                 return false;
         return true;
     }
 
     /// Whether a triangle has the number; those below the first wrap around.
     bool is_there(uint32_t number) const { return number - first_number_ < triangle_count_; }
-
-    bool is_missing(uint32_t unit, uint32_t child) const {
-        for (uint32_t axis = 0; axis < 3; ++axis)
-            if (range_of(texel(unit, axis), child) != GridRange())
-                return false;
-        return true;
-    }
-
-    bool has_box(uint32_t unit, uint32_t child) const {
-        for (uint32_t axis = 0; axis < 3; ++axis)
-            if (range_of(texel(unit, axis), child).empty())
-                return false;
-        return true;
-    }
 
     const Page& page_;
     const std::span<const uvec4> texels_;
@@ -113,6 +112,19 @@ private:
 };
 
 } // namespace
+
+bool is_sound_head(std::span<const uvec4> head, uint64_t units) {
+    const auto root = head.subspan(OVC_ROOT_UNIT * OVC_UNIT_TEXELS);
+    if (units <= OVC_ROOT_UNIT || units >= OVC_MAX_PAGE_UNITS ||
+        head[2] != uvec4(OVC_ROOT_UNIT, 0xffffffffu, 0, 0) || !has_sound_grid(head) ||
+        is_missing(root, 0) || root[3].y || root[3].z || root[3].w)
+        return false;
+    for (uint32_t child = 0; child < 4; ++child)
+        if (!is_missing(root, child) &&
+            (!has_box(root, child) || uint64_t(root[3].x) + child >= units))
+            return false;
+    return true;
+}
 
 bool is_walkable(const Page& page, uint32_t triangle_count, uint32_t first_number) {
     return PageChecker(page, triangle_count, first_number).check();

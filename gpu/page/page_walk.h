@@ -17,6 +17,8 @@
 #include <bit>
 #include <cassert>
 #include <limits>
+#include <type_traits>
+#include <vector>
 
 namespace ovc {
 
@@ -94,19 +96,26 @@ private:
     size_t top_ = 0;
 };
 
+/// In place of the pages of a tree that has none: its links lead to its own units.
+struct NoPages {};
+
 /// Calls visit(i, rays) for the triangles of a pair until a call returns true.
 template <class Visit>
 bool visit_pair(const uvec4* texels, RaySet rays, Visit&& visit) {
     return visit(texels[0].w, rays) || (texels[1].w != OVC_NO_TRIANGLE && visit(texels[1].w, rays));
 }
 
-/// Walks a tree. visit, enter_portal and limit are as for walk_units().
-template <class Visit, class Enter, class Limit>
+/// Walks a tree. units_of, visit, enter_portal and limit are as for walk_units().
+template <class UnitsOf, class Visit, class Enter, class Limit>
 class UnitWalk {
 public:
-    UnitWalk(std::span<const uvec4> tree, std::span<const Page> pages, Visit& visit,
-             Enter& enter_portal, Limit& limit)
-        : tree_(tree), pages_(pages), visit_(visit), enter_portal_(enter_portal), limit_(limit) {}
+    UnitWalk(std::span<const uvec4> tree, UnitsOf& units_of, Visit& visit, Enter& enter_portal,
+             Limit& limit)
+        : tree_(tree),
+          units_of_(units_of),
+          visit_(visit),
+          enter_portal_(enter_portal),
+          limit_(limit) {}
 
     /// Returns true when a call of visit or enter_portal stopped it.
     template <class Walked>
@@ -127,6 +136,8 @@ public:
     }
 
 private:
+    static constexpr bool kHasLinks = !std::is_same_v<std::remove_const_t<UnitsOf>, NoPages>;
+
     /// Returns the rays to the unit whose limits are not before it by now, and notes the limits.
     RaySet still_on_way(const UnitOnWay& unit) {
         RaySet still = 0;
@@ -147,9 +158,15 @@ private:
     /// the stack.
     bool go_below(const UnitOnWay& here) {
         const uvec4* const texels = here.texels();
-        const bool is_link = here.units == tree_.data() && !pages_.empty() && texels[3].y != 0;
-        const uvec4* const below = is_link ? pages_[texels[3].y - 1].view().data() : here.units;
-        const uint32_t first_child = is_link ? texels[3].z : texels[3].x;
+        const uvec4* below = here.units;
+        uint32_t first_child = texels[3].x;
+        if constexpr (kHasLinks)
+            if (here.units == tree_.data() && texels[3].y != 0) {
+                below = units_of_(texels[3].y - 1);
+                first_child = texels[3].z;
+                if (!below)
+                    return false;
+            }
         NodeMeeting meeting;
         meet_(rays_, here.rays, &texels[0].x, meeting);
         uint32_t by_place[4]; // the farthest first
@@ -173,7 +190,7 @@ private:
     }
 
     const std::span<const uvec4> tree_;
-    const std::span<const Page> pages_;
+    UnitsOf& units_of_;
     Visit& visit_;
     Enter& enter_portal_;
     Limit& limit_;
@@ -187,26 +204,27 @@ private:
 /// bool for each portal that they meet so: ray r between its t_min and limit(r), where t is that of
 /// the ray itself. Goes to the nearest children first, as the kernel does, but to pairs before
 /// nodes. Returns true when one of the calls stopped it. tree: the units of a page or of a
-/// top-level tree; header: the number of the header's unit in them; pages: those that the tree's
-/// links lead to; walked(r): ray r in the frame of the tree.
-template <class Walked, class Visit, class Enter, class Limit>
-bool walk_units(std::span<const uvec4> tree, uint32_t header, std::span<const Page> pages,
-                RaySet rays, Walked&& walked, Visit&& visit, Enter&& enter_portal, Limit&& limit) {
-    return UnitWalk(tree, pages, visit, enter_portal, limit).walk(header, rays, walked);
+/// top-level tree; header: the number of the header's unit in them; units_of(page): the units that
+/// the tree's links lead to, null where a page is missing. Those of a page are not used any more
+/// when the next page is asked for. walked(r): ray r in the frame of the tree.
+template <class UnitsOf, class Walked, class Visit, class Enter, class Limit>
+bool walk_units(std::span<const uvec4> tree, uint32_t header, UnitsOf&& units_of, RaySet rays,
+                Walked&& walked, Visit&& visit, Enter&& enter_portal, Limit&& limit) {
+    return UnitWalk(tree, units_of, visit, enter_portal, limit).walk(header, rays, walked);
 }
 
 /// Walks all pages under the top-level tree, as walk_units() does. scene: its box and frame;
 /// prepared(r): ray r.
-template <class Prepared, class Visit, class Limit>
-bool walk_tree_together(const TopLevel& top, std::span<const Page> pages, const Leaf& scene,
-                        RaySet all, Prepared&& prepared, Visit&& visit, Limit&& limit) {
+template <class UnitsOf, class Prepared, class Visit, class Limit>
+bool walk_tree_together(const TopLevel& top, UnitsOf&& units_of, const Leaf& scene, RaySet all,
+                        Prepared&& prepared, Visit&& visit, Limit&& limit) {
     const std::span<const uvec4> units = top.tree.view();
     const auto nowhere = [](uint32_t, RaySet) { return false; };
     const auto enter = [&](uint32_t number, RaySet rays) {
         assert(number < top.portals.size());
         const Portal& portal = top.portals[number];
         return walk_units(
-            units, portal.tree, pages, rays,
+            units, portal.tree, units_of, rays,
             [&](uint32_t r) { return walked_ray(portal, prepared(r)); },
             [&](uint32_t i, RaySet some) { return visit(portal.first_number + i, some); }, nowhere,
             limit);
@@ -214,15 +232,16 @@ bool walk_tree_together(const TopLevel& top, std::span<const Page> pages, const 
     const auto walked = [&](uint32_t r) {
         return top.way_in ? walked_ray(*top.way_in, prepared(r)) : walked_ray(scene, prepared(r));
     };
-    return walk_units(units, 0, pages, all, walked, visit, enter, limit);
+    return walk_units(units, 0, units_of, all, walked, visit, enter, limit);
 }
 
-/// Walks all pages with one ray. Calls visit(i) and limit().
+/// Walks all pages, which are in memory, with one ray. Calls visit(i) and limit().
 template <class Visit, class Limit>
 bool walk_tree(const TopLevel& top, std::span<const Page> pages, const Leaf& scene,
                const PreparedRay& p, Visit&& visit, Limit&& limit) {
     return walk_tree_together(
-        top, pages, scene, 1, [&](uint32_t) -> const PreparedRay& { return p; },
+        top, [&](uint32_t page) { return pages[page].view().data(); }, scene, 1,
+        [&](uint32_t) -> const PreparedRay& { return p; },
         [&](uint32_t i, RaySet) { return visit(i); }, [&](uint32_t) { return limit(); });
 }
 
@@ -231,7 +250,7 @@ template <class Visit, class Limit>
 bool walk_page(const Page& page, const Leaf& leaf, const PreparedRay& p, Visit&& visit,
                Limit&& limit) {
     return walk_units(
-        page.view(), 0, {}, 1, [&](uint32_t) { return walked_ray(leaf, p); },
+        page.view(), 0, NoPages(), 1, [&](uint32_t) { return walked_ray(leaf, p); },
         [&](uint32_t i, RaySet) { return visit(i); }, [](uint32_t, RaySet) { return false; },
         [&](uint32_t) { return limit(); });
 }

@@ -121,7 +121,7 @@ Page tree_over(std::span<const Page> pages, std::span<const Entry> entries) {
 Page tree_of_one(const Page& page) {
     Page tree;
     tree.depth = 0;
-    const auto units = page.view().first((OVC_ROOT_UNIT + 1) * OVC_UNIT_TEXELS);
+    const auto units = page.view().first(kHeadTexels);
     tree.texels.assign(units.begin(), units.end());
     tree.texels[OVC_ROOT_UNIT * OVC_UNIT_TEXELS + 3] = {0, 1, 0, 0}; // as in tree_over()
     return tree;
@@ -151,7 +151,7 @@ uint32_t append(TopLevel& top, const TopLevel& part, uint32_t first_page) {
     const auto begin = uint32_t(top.tree.units());
     top.tree.texels.resize(top.tree.texels.size() + part.tree.texels.size());
     const auto to = std::span(top.tree.texels).last(part.tree.texels.size());
-    copy_relocated(part.tree, begin, to);
+    copy_relocated(part.tree.view(), begin, to);
     for (const Link& link : part.links) {
         to[size_t(link.unit) * OVC_UNIT_TEXELS + 3].y += first_page;
         top.links.push_back({begin + link.unit, link.first_child});
@@ -295,11 +295,10 @@ bool is_usable(const TopLevel& top, std::span<const Page> pages, const PoolLayou
            (pages.size() < OVC_KEY_LEAF || all_fit(pages, pool, tree));
 }
 
-void copy_relocated(const Page& page, uint32_t first_unit, std::span<uvec4> to) {
+void copy_relocated(std::span<const uvec4> from, uint32_t first_unit, std::span<uvec4> to) {
     constexpr size_t kUnitGrain = 4096; // units a task
-    const std::span<const uvec4> from = page.view();
     assert(to.size() == from.size());
-    parallel_for(page.units(), kUnitGrain, [&](size_t begin, size_t end) {
+    parallel_for(from.size() / OVC_UNIT_TEXELS, kUnitGrain, [&](size_t begin, size_t end) {
         for (size_t unit = begin; unit < end; ++unit) {
             const uvec4* const source = from.data() + unit * OVC_UNIT_TEXELS;
             uvec4* const texel = to.data() + unit * OVC_UNIT_TEXELS;

@@ -127,6 +127,6 @@ bool is_usable(const TopLevel& top, std::span<const Page> pages, const PoolLayou
 
 /// Writes a page for a place in the pool that begins at `first_unit`, so that its units count from
 /// the pool's first; on all cores. to: as large as the page.
-void copy_relocated(const Page& page, uint32_t first_unit, std::span<uvec4> to);
+void copy_relocated(std::span<const uvec4> page, uint32_t first_unit, std::span<uvec4> to);
 
 } // namespace ovc

@@ -43,7 +43,7 @@ Page pool_of(const Built& built) {
     for (uint32_t page = 0; page < built.pages.size(); ++page) {
         const auto first_unit = uint32_t(pool.units());
         pool.texels.resize(pool.texels.size() + built.pages[page].texels.size());
-        copy_relocated(built.pages[page], first_unit,
+        copy_relocated(built.pages[page].view(), first_unit,
                        std::span(pool.texels).subspan(size_t(first_unit) * OVC_UNIT_TEXELS));
         for (const Link& link : built.top.links_of(page))
             pool.texels[size_t(link.unit) * OVC_UNIT_TEXELS + 3].x = first_unit + link.first_child;

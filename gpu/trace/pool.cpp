@@ -21,18 +21,18 @@ void Pool::show() {
         texels_.emplace_back().show(buffer, GL_RGBA32UI, 0, buffer.bytes());
 }
 
-void Pool::upload(uint64_t offset, const Page& page, uint32_t first_unit) const {
-    if (page.bytes() == 0)
+void Pool::upload(uint64_t offset, std::span<const uvec4> page, uint32_t first_unit) const {
+    if (page.empty())
         return;
     const uint32_t buffer = layout_.buffer_of(offset);
     const uint64_t inside = offset - layout_.begin_of(buffer);
-    assert(buffer < buffers_.size() && inside + page.bytes() <= buffers_[buffer].bytes());
-    void* const to =
-        glMapNamedBufferRange(buffers_[buffer].id(), GLintptr(inside), GLsizeiptr(page.bytes()),
-                              GL_MAP_WRITE_BIT | GL_MAP_INVALIDATE_RANGE_BIT);
+    assert(buffer < buffers_.size() && inside + page.size_bytes() <= buffers_[buffer].bytes());
+    void* const to = glMapNamedBufferRange(buffers_[buffer].id(), GLintptr(inside),
+                                           GLsizeiptr(page.size_bytes()),
+                                           GL_MAP_WRITE_BIT | GL_MAP_INVALIDATE_RANGE_BIT);
     if (!to)
         return; // the context is lost; GlThread notices that
-    copy_relocated(page, first_unit, {static_cast<uvec4*>(to), page.view().size()});
+    copy_relocated(page, first_unit, {static_cast<uvec4*>(to), page.size()});
     glUnmapNamedBuffer(buffers_[buffer].id());
 }
 

@@ -26,8 +26,8 @@ public:
     /// Makes the buffers readable by kernels. To be called once they are allocated.
     void show();
 
-    /// Writes the page at `offset`, in bytes, with its units counted from `first_unit` on.
-    void upload(uint64_t offset, const Page& page, uint32_t first_unit = 0) const;
+    /// Writes the units of a page at `offset`, in bytes, counted from `first_unit` on.
+    void upload(uint64_t offset, std::span<const uvec4> page, uint32_t first_unit = 0) const;
 
     /// Writes a word at `offset`, in bytes.
     void write(uint64_t offset, uint32_t word) const;

@@ -159,7 +159,7 @@ void Tracer::upload_top_level() {
     for (uint32_t leaf = 0; leaf < page_data_.size(); ++leaf)
         for (const Link& link : top_.links_of(leaf))
             tree.texels[size_t(link.unit) * OVC_UNIT_TEXELS + 3].x = way_to(leaf, link);
-    pool_.upload(0, tree);
+    pool_.upload(0, tree.view());
     if (!has_portals())
         return;
     const std::vector<uvec4> table = pack_portals(top_.portals, top_.far_triangles);
@@ -182,7 +182,7 @@ bool Tracer::update(const Box& bounds, std::span<const Page> pages, std::span<co
             continue;
         const auto [offset, bytes] = residency.slot(leaf);
         if (bytes == pages[leaf].bytes())
-            pool_.upload(offset, pages[leaf], uint32_t(offset / OVC_UNIT_BYTES));
+            pool_.upload(offset, pages[leaf].view(), uint32_t(offset / OVC_UNIT_BYTES));
         else
             residency.evict(leaf);
     }
@@ -203,6 +203,12 @@ std::vector<uint32_t> Tracer::missing() const {
 }
 
 Moved Tracer::bring(std::span<const uint32_t> wanted) {
+    return bring(wanted, [this](uint32_t leaf, FunctionRef<void(std::span<const uvec4>)> take) {
+        take(page_data_[leaf].view());
+    });
+}
+
+Moved Tracer::bring(std::span<const uint32_t> wanted, const GivePage& give) {
     if (wanted.empty())
         return {};
     Moved moved;
@@ -210,14 +216,20 @@ Moved Tracer::bring(std::span<const uint32_t> wanted) {
     const uint64_t keep = pool_.residency().now();
     for (const uint32_t leaf : wanted) {
         assert(leaf < page_data_.size());
-        const Page& page = page_data_[leaf];
-        if (!pool_.residency().admit(leaf, page.bytes(), keep, evicted))
+        bool is_in = false;
+        give(leaf, [&](std::span<const uvec4> units) {
+            assert(units.size_bytes() == page_data_[leaf].bytes());
+            is_in = pool_.residency().admit(leaf, units.size_bytes(), keep, evicted);
+            if (!is_in)
+                return;
+            const uint64_t offset = pool_.residency().slot(leaf).offset;
+            pool_.upload(offset, units, uint32_t(offset / OVC_UNIT_BYTES));
+        });
+        if (!is_in)
             break;
-        const uint64_t offset = pool_.residency().slot(leaf).offset;
-        pool_.upload(offset, page, uint32_t(offset / OVC_UNIT_BYTES));
         say_where(leaf);
         moved.pages += 1;
-        moved.bytes += page.bytes();
+        moved.bytes += page_data_[leaf].bytes();
     }
     for (const uint32_t leaf : evicted)
         say_where(leaf);

@@ -3,6 +3,7 @@
 // resident pages, within a budget of GPU bytes.
 #pragma once
 
+#include "core/function_ref.h"
 #include "core/result.h"
 #include "gpu/budget/ledger.h"
 #include "gpu/gl/driver_threads.h"
@@ -88,6 +89,11 @@ public:
     /// Moves in the pages of `wanted`, leaves that are not resident, in this order: as many as fit
     /// without evicting each other, at least the first.
     Moved bring(std::span<const uint32_t> wanted);
+    /// Calls take(units of the page) while these are in memory; not at all where they cannot be.
+    using GivePage =
+        FunctionRef<void(uint32_t leaf, FunctionRef<void(std::span<const uvec4>)> take)>;
+    /// The same for pages that need not be in memory; ends at one that is not given.
+    Moved bring(std::span<const uint32_t> wanted, const GivePage& give);
 
     /// Takes up the pages and the top-level tree as they are now, in `bounds`; the others that were
     /// given to create() live on. was: for each page its number before, or kNone; changed: those

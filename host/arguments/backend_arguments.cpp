@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// --backend, --gpu-memory, --leaf-triangles, --leaves, --device, --precision, --kernel, --level1,
+// --backend, --gpu-memory, --host-memory, --leaf-triangles, --leaves, --device, --precision,
+// --kernel, --level1,
 // --level1-build.
 #include "host/arguments/backend_arguments.h"
 #include "core/text/suggestion.h"
@@ -29,7 +30,7 @@ Result<BackendKind> parse_backend(std::string_view name) {
                              fmt::join(kBackends, ", "), did_you_mean(name, kBackends))};
 }
 
-void BackendArguments::add_to(CLI::App& app) {
+void BackendArguments::add_to(CLI::App& app, const char* host_memory_help) {
     const char* group = "Tracing";
     app.add_option(
            "--backend", backend,
@@ -46,6 +47,7 @@ void BackendArguments::add_to(CLI::App& app) {
                    "driver reports, less headroom")
         ->group(group)
         ->type_name("SIZE");
+    app.add_option("--host-memory", host_memory, host_memory_help)->group(group)->type_name("SIZE");
     CLI::Option* per_leaf = app.add_option("--leaf-triangles", leaf_triangles,
                                            "The most triangles of a level-1 leaf; default: "
                                            "a tenth; all where they fit and rays gain")
@@ -81,6 +83,7 @@ void BackendArguments::add_to(CLI::App& app) {
 Result<Done> BackendArguments::check_meaning(BackendKind kind) const {
     if (kind == BackendKind::CpuKdTree || kind == BackendKind::Embree)
         for (const auto& [option, value] : {std::pair{"--gpu-memory", &gpu_memory},
+                                            {"--host-memory", &host_memory},
                                             {"--leaf-triangles", &leaf_triangles},
                                             {"--leaves", &leaves},
                                             {"--device", &device},
@@ -89,6 +92,9 @@ Result<Done> BackendArguments::check_meaning(BackendKind kind) const {
             if (!value->empty())
                 return Error{fmt::format("{} means nothing to the backend {}, which uses no GPU",
                                          option, backend)};
+    if (structure_of(kind) != OVC_STRUCTURE_TWO_LEVEL && !host_memory.empty())
+        return Error{fmt::format("--host-memory means nothing to the backend {}; two-level has it",
+                                 backend)};
     if (kind != BackendKind::ThesisTwoLevel)
         for (const auto& [option, value] :
              {std::pair{"--level1", &level1}, {"--level1-build", &level1_build}})
@@ -112,6 +118,15 @@ Result<BackendOptions> BackendArguments::resolve() const {
         if (!size)
             return Error{"--gpu-memory: " + size.error().message};
         options.gpu_memory = *size;
+    }
+    if (!host_memory.empty()) {
+        const Result<MemorySize> size = parse_memory_size(host_memory);
+        if (!size)
+            return Error{"--host-memory: " + size.error().message};
+        if (size->share > 0)
+            return Error{
+                fmt::format("--host-memory: found '{}', expected bytes, such as 2G", host_memory)};
+        options.host_bytes = size->bytes;
     }
     if (!leaf_triangles.empty()) {
         const Result<uint64_t> count =

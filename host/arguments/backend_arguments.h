@@ -21,6 +21,7 @@ Result<BackendKind> parse_backend(std::string_view name);
 struct BackendArguments {
     std::string backend = "auto";
     std::string gpu_memory;
+    std::string host_memory;
     std::string leaf_triangles;
     std::string leaves;
     std::string device;
@@ -29,7 +30,11 @@ struct BackendArguments {
     std::string level1;
     std::string level1_build;
 
-    void add_to(CLI::App& app);
+    /// host_memory_help: what --host-memory says in the help.
+    void add_to(CLI::App& app,
+                const char* host_memory_help =
+                    "For .ovc files: the most host memory to use for triangles and what is built "
+                    "of them, 2G; the others stay on the disk");
     Result<BackendOptions> resolve() const;
 
 private:

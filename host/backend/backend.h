@@ -23,6 +23,7 @@ namespace ovc {
 class DeviceOpening;
 class PluginDevice;
 struct KdTree;
+struct SceneOnDisk;
 struct SoupDifference;
 
 /// A backend is built over one soup, which must outlive it unchanged but for what update() is told
@@ -102,6 +103,8 @@ struct BackendOptions {
     ovc_level1_build level1_build = OVC_LEVEL1_BUILD_TOP_DOWN;
     bool tell_active = false; // counts pages for take_active(); two-level only
     BuildWatching watching = BuildWatching::None;
+    uint64_t host_bytes = 0;              // of host memory, for a scene on a disk; 0: no limit
+    const SceneOnDisk* on_disk = nullptr; // what was saved lies there; outlives the backend
     Bytes saved{}; // of an earlier run over the same soup; outlives the backend. Two-level only
 };
 

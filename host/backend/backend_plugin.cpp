@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The backends behind the C ABI, which takes the soup and its rays without a copy.
+#include "core/file/scene_on_disk.h"
 #include "host/backend/backend.h"
 #include "host/backend/mesh_numbers.h"
 #include "host/backend/plugin_config.h"
@@ -115,19 +116,43 @@ private:
     bool refused_ = false; // the library refused a push
 };
 
+/// Reads corners of a mesh that is stored, which is the user of the C function.
+static int read_corners(void* user, uint64_t first, uint64_t count, void* corners) {
+    const StoredCorners& stored = *static_cast<const StoredCorners*>(user);
+    const size_t triangle_bytes = stored.has_doubles() ? 72 : 36;
+    return stored.read(uint32_t(first),
+                       {static_cast<std::byte*>(corners), size_t(count) * triangle_bytes})
+               ? 0
+               : 1;
+}
+
+/// Reads what was saved, of the scene that is the user of the C function.
+static int read_saved(void* user, uint64_t offset, void* bytes, size_t size) {
+    const SceneOnDisk& disk = *static_cast<const SceneOnDisk*>(user);
+    return disk.file.read(disk.levels_offset + offset, {static_cast<std::byte*>(bytes), size}) ? 0
+                                                                                               : 1;
+}
+
 static ovc_mesh mesh_of(const Chunk& chunk) {
     ovc_mesh mesh{};
     mesh.struct_size = sizeof(mesh);
-    if (chunk.double_corners().empty())
-        mesh.positions = reinterpret_cast<const float*>(chunk.corners().data());
-    else
-        mesh.positions_double = reinterpret_cast<const double*>(chunk.double_corners().data());
-    mesh.vertex_count = 3 * uint64_t(chunk.size());
     for (int axis = 0; axis < 3; ++axis)
         mesh.origin[axis] = chunk.origin()[axis];
     if (chunk.transform())
         mesh.transform = chunk.transform()->rows[0].data();
     mesh.mask = chunk.mask();
+    if (const StoredCorners* stored = chunk.stored_corners()) {
+        mesh.triangle_count = chunk.size();
+        mesh.read_corners = read_corners;
+        mesh.read_user = const_cast<StoredCorners*>(stored);
+        mesh.reads_doubles = stored->has_doubles();
+        return mesh;
+    }
+    if (chunk.double_corners().empty())
+        mesh.positions = reinterpret_cast<const float*>(chunk.corners().data());
+    else
+        mesh.positions_double = reinterpret_cast<const double*>(chunk.double_corners().data());
+    mesh.vertex_count = 3 * uint64_t(chunk.size());
     mesh.flags = OVC_MESH_SHARED; // instances of a mesh point to the same corners, and share pages
     return mesh;
 }
@@ -342,6 +367,12 @@ Result<ovc_scene_config> config_of(const BackendOptions& options, const ovc_devi
     if (config.structure == OVC_STRUCTURE_TWO_LEVEL) {
         config.saved = options.saved.data();
         config.saved_bytes = options.saved.size();
+    }
+    if (options.on_disk) {
+        config.host_memory_bytes = options.host_bytes;
+        config.read_saved = read_saved;
+        config.read_user = const_cast<SceneOnDisk*>(options.on_disk);
+        config.saved_bytes = options.on_disk->levels_bytes;
     }
     return config;
 }

@@ -115,9 +115,8 @@ static Result<Scene> stream_scene(const std::string& source, uint64_t host_bytes
 }
 
 /// As convert_to_scene_file(), within so much host memory.
-static Result<Done> convert_streamed(const std::string& source, uint64_t host_bytes,
-                                     BackendOptions options, const LogSink& log,
-                                     const std::string& output) {
+static Result<Done> convert_streamed(const std::string& source, BackendOptions options,
+                                     const LogSink& log, const std::string& output) {
     if (is_test_scene(source) ? !test_scene_entry(source).streams : !streams(source))
         return Error{fmt::format("--host-memory goes with inputs that stream, .ply and the test "
                                  "scene landscape-N; found '{}'",
@@ -129,7 +128,7 @@ static Result<Done> convert_streamed(const std::string& source, uint64_t host_by
     Provenance from;
     FilesRead files;
     const LogSink listening = noting_warnings(from, log);
-    const Result<Scene> scene = stream_scene(source, host_bytes, listening, files, *store);
+    const Result<Scene> scene = stream_scene(source, options.host_bytes, listening, files, *store);
     const Result<Done> stored = store->finish();
     if (!stored)
         return stored; // reading ends where the store fails
@@ -138,7 +137,7 @@ static Result<Done> convert_streamed(const std::string& source, uint64_t host_by
     from.files = files.stamps();
     options.watching = BuildWatching::Shown;
     const SaveLevels save_levels = [&](const ByteSink& sink) {
-        return save_streamed_levels(*scene, *store, host_bytes, folder, options, log, sink);
+        return save_streamed_levels(*scene, *store, options.host_bytes, folder, options, log, sink);
     };
     return write_scene_file(*scene, *store, from, save_levels, output);
 }
@@ -168,13 +167,10 @@ public:
         app.add_option("OUT", output_,
                        "The file to write, the last that is named; replaced only once the new one "
                        "is complete");
-        app.add_option(
-               "--host-memory", host_memory_,
-               "For .ovc of .ply and landscape-N: the most host memory to use, 2G, besides "
-               "what the program and the driver take; the triangles wait on the disk of OUT")
-            ->type_name("SIZE");
         log_.add_to(app, /* with_quiet= */ true);
-        backend_.add_to(app);
+        backend_.add_to(
+            app, "For .ovc of .ply and landscape-N: the most host memory to use, 2G, besides "
+                 "what the program and the driver take; the triangles wait on the disk of OUT");
         app.footer(kConvertExamples);
     }
 
@@ -197,38 +193,30 @@ public:
         const Result<LogLevel> level = log_.resolve();
         if (!level)
             return level.error();
-        const Result<uint64_t> host_bytes = host_bytes_of();
-        if (!host_bytes)
-            return host_bytes.error();
+        if (const Result<Done> fine = check_host_memory(); !fine)
+            return fine.error();
         const LogSink log = standard_error_log(*level);
-        const Result<Done> done = convert(*backend_options, *host_bytes, log);
+        const Result<Done> done = convert(*backend_options, log);
         if (!done)
             return done.error();
         return kExitOk;
     }
 
 private:
-    /// Returns --host-memory in bytes; 0 where it is not given.
-    Result<uint64_t> host_bytes_of() const {
-        if (host_memory_.empty())
-            return uint64_t(0);
+    Result<Done> check_host_memory() const {
+        if (backend_.host_memory.empty())
+            return Done{};
         if (extension_of(output_) != ".ovc")
             return Error{
                 fmt::format("--host-memory goes with an output in .ovc, not with '{}'", output_)};
         if (source_.scenes.size() > 1 || !source_.model.empty())
             return Error{"--host-memory goes with one input alone"};
-        const Result<MemorySize> size = parse_memory_size(host_memory_);
-        if (!size)
-            return Error{fmt::format("--host-memory: {}", size.error().message)};
-        if (size->share > 0)
-            return Error{
-                fmt::format("--host-memory: found '{}', expected bytes, such as 2G", host_memory_)};
-        return size->bytes;
+        return Done{};
     }
 
-    Result<Done> convert(const BackendOptions& options, uint64_t host_bytes, const LogSink& log) {
-        if (host_bytes > 0)
-            return convert_streamed(source_.scenes.front(), host_bytes, options, log, output_);
+    Result<Done> convert(const BackendOptions& options, const LogSink& log) {
+        if (options.host_bytes > 0)
+            return convert_streamed(source_.scenes.front(), options, log, output_);
         return extension_of(output_) == ".ovc"
                    ? convert_to_scene_file(source_, options, log, output_)
                    : convert_to_mesh(source_, log, output_, log_.quiet());
@@ -236,7 +224,6 @@ private:
 
     SceneArguments source_;
     std::string output_;
-    std::string host_memory_;
     LogArguments log_;
     BackendArguments backend_; // for .ovc
 };

@@ -195,13 +195,15 @@ public:
         const Result<LogLevel> level = log_.resolve();
         if (!level)
             return level.error();
-        const Result<BackendOptions> options = backend_.resolve();
+        Result<BackendOptions> options = backend_.resolve();
         if (!options)
             return options.error();
         const LogSink log = standard_error_log(*level);
+        source_.on_disk = options->host_bytes > 0;
         const Result<Scene> scene = open_scene(source_, log);
         if (!scene)
             return scene.error();
+        options->on_disk = scene->on_disk.get();
         SceneSummary summary = summarize(*scene);
         const Result<ovc_plan> plan = make_plan(scene->soup, *options, log);
         summary.needs =

@@ -60,10 +60,12 @@ public:
         const LogSink log = standard_error_log(*level);
         use_wide_vectors(*backend_options);
         DeviceOpening opening(*backend_options);
+        source_.on_disk = backend_options->host_bytes > 0;
         const Result<Scene> scene = open_scene(source_, log);
         if (!scene)
             return scene.error();
         backend_options->saved = scene->saved;
+        backend_options->on_disk = scene->on_disk.get();
         const Result<std::unique_ptr<Backend>> backend =
             make_backend(scene->soup, *backend_options, log, opening);
         if (!backend)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// overcast convert under a budget of host memory: pictures of the file are those of its source, and
-// an error leaves nothing behind.
+// overcast convert and render under a budget of host memory: pictures of the file are those of its
+// source, and an error leaves nothing behind.
 #include "host/arguments/arguments.h"
 #include "host/command/command.h"
 #include "host/terminal/interrupt.h"
@@ -72,6 +72,43 @@ TEST_F(ConvertUnderABudget, PicturesAreThoseOfTheSource) {
         EXPECT_EQ(picture(file), expected);
         EXPECT_EQ(picture(file, "8M"), expected);
     }
+}
+
+/// Holes, mirrors and instances ask rays for more than nearest hits, and shade what they hit.
+TEST_F(ConvertUnderABudget, PicturesOfAFileOnTheDiskAreTheSame) {
+    for (const std::string scene : {"plants-1", "leaf-canopy", "mirrors", "grass-in-wind"}) {
+        const std::string file = path(scene + ".ovc");
+        ASSERT_EQ(error({"convert", scene, file, "--leaves", "40"}), "");
+        const std::string expected = picture(file);
+        ASSERT_FALSE(expected.empty());
+        for (const std::string gpu : {"256M", "8M"})
+            for (const std::string host : {"1G", "16M"}) {
+                SCOPED_TRACE(scene + ", GPU " + gpu + ", host " + host);
+                EXPECT_EQ(error({"render", file, "--size", "96x64", "--gpu-memory", gpu,
+                                 "--host-memory", host, "-o", path("disk.png"), "--quiet"}),
+                          "");
+                EXPECT_TRUE(bytes("disk.png") == expected);
+            }
+    }
+}
+
+TEST_F(ConvertUnderABudget, HostMemoryOfARenderingGoesWithOneSceneFile) {
+    const auto refused = [&](Arguments arguments) {
+        arguments.insert(arguments.begin(), "render");
+        arguments.insert(arguments.end(), {"-o", path("a.png"), "--quiet"});
+        return error(arguments);
+    };
+    EXPECT_THAT(refused({"box", "--host-memory", "1G"}),
+                testing::HasSubstr("--host-memory goes with one .ovc file"));
+    EXPECT_THAT(refused({path("none.ovc"), "--host-memory", "1G"}),
+                testing::HasSubstr("no such file"));
+    EXPECT_THAT(refused({path("none.ovc"), "--host-memory", "50%"}),
+                testing::HasSubstr("expected bytes, such as 2G"));
+    EXPECT_THAT(refused({path("none.ovc"), "--host-memory", "1G", "--backend", "cpu-kdtree"}),
+                testing::HasSubstr("--host-memory means nothing to the backend cpu-kdtree"));
+    ASSERT_EQ(error({"convert", "box", path("box.ovc"), "--backend", "cpu-kdtree"}), "");
+    EXPECT_THAT(refused({path("box.ovc"), "--host-memory", "1G"}),
+                testing::HasSubstr("the file holds no levels"));
 }
 
 TEST_F(ConvertUnderABudget, AFileThatFitsIsTheSameAsWithoutABudget) {

@@ -188,6 +188,12 @@ static std::string gpu_lines(const ovc_statistics& t) {
                         human_count(t.pages_refitted), human_count(t.pages_rebuilt));
     text += fmt::format("  moved      {} in {} pages, {} passes\n", human_bytes(t.bytes_in),
                         human_count(t.pages_in), human_count(t.passes));
+    if (t.host_budget_bytes > 0)
+        text +=
+            fmt::format("  disk       {} in {} reads; {} of host memory at most, of a budget of "
+                        "{}\n",
+                        human_bytes(t.disk_bytes), human_count(t.disk_reads),
+                        human_bytes(t.host_budget_peak_bytes), human_bytes(t.host_budget_bytes));
     return text;
 }
 

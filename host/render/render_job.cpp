@@ -410,6 +410,20 @@ static void add_what_backend_tells(const RenderJob& job, const Scene& scene, Sta
                                             stats.tracing.leaves}));
 }
 
+static BackendOptions options_for(const RenderJob& job, const Scene& scene) {
+    BackendOptions options = job.backend;
+    options.saved = scene.saved;
+    options.on_disk = scene.on_disk.get();
+    options.watching = job.quiet ? BuildWatching::Silent : BuildWatching::Shown;
+    return options;
+}
+
+/// Shading reads corners as well as the backend does.
+static Result<Done> all_was_read(const Scene& scene) {
+    const auto failed = scene.on_disk ? scene.on_disk->file.error() : std::nullopt;
+    return failed ? Result<Done>(*failed) : Done{};
+}
+
 Result<int> render(const RenderJob& job) {
     if (all_there(job)) {
         if (!job.quiet)
@@ -444,9 +458,7 @@ Result<int> render(const RenderJob& job) {
     tell_of_up_left_out(job, *scene, log);
     if (const Result<Done> fine = check_frames(job, *scene); !fine)
         return fine.error();
-    BackendOptions options = job.backend;
-    options.saved = scene->saved;
-    options.watching = job.quiet ? BuildWatching::Silent : BuildWatching::Shown;
+    BackendOptions options = options_for(job, *scene);
     Result<std::unique_ptr<Backend>> backend = make_backend(scene->soup, options, log, opening);
     if (!backend && backend.error().kind == ErrorKind::Cancelled) {
         print_message("interrupted while building; nothing was rendered");
@@ -459,6 +471,8 @@ Result<int> render(const RenderJob& job) {
     options.saved = {}; // of the first moment
     Stage stage(job, *scene, std::move(*backend), options);
     Result<Done> done = render_shots(job, *part, stage, *scene, log, stats);
+    if (done)
+        done = all_was_read(*scene);
     if (!done)
         return done.error();
     add_what_backend_tells(job, *scene, stage, stats);

@@ -128,6 +128,12 @@ static Result<Scene> make_with_model(const std::string& name, const ImportOption
     return scene ? std::move(scene) : Error{fmt::format("{}: {}", model, scene.error().message)};
 }
 
+static bool is_one_scene_file(const SceneArguments& arguments) {
+    return arguments.scenes.size() == 1 && arguments.model.empty() &&
+           !is_test_scene(arguments.scenes[0]) &&
+           std::filesystem::path(arguments.scenes[0]).extension() == ".ovc";
+}
+
 Result<Scene> open_scene(const SceneArguments& arguments, const LogSink& log,
                          std::optional<ImageSize> size, FilesRead* files) {
     assert(arguments.check());
@@ -139,6 +145,11 @@ Result<Scene> open_scene(const SceneArguments& arguments, const LogSink& log,
     options.pov_version = *pov_version_of(arguments.pov_version);
     options.world = *world_of(arguments.world);
     options.moment = arguments.moment;
+    options.on_disk = arguments.on_disk;
+    if (arguments.on_disk && !is_one_scene_file(arguments))
+        return Error{fmt::format("--host-memory goes with one .ovc file, which overcast convert "
+                                 "makes; found '{}'",
+                                 arguments.name())};
     std::vector<NamedScene> scenes;
     for (const std::string& name : arguments.scenes) {
         Result<Scene> scene = open_scene(name, options, arguments.model);

@@ -31,20 +31,20 @@ static Census count(const Chunk& chunk) {
     return parallel_reduce(
         chunk.size(), Census{},
         [&](size_t first, size_t last, Census census) {
-            for (size_t prim = first; prim < last; ++prim) {
-                const Triangle triangle = chunk.triangle(uint32_t(prim));
-                switch (triangle_fault(triangle)) {
-                case TriangleFault::NotFinite:
-                    ++census.dropped.not_finite;
-                    break;
-                case TriangleFault::Degenerate:
-                    ++census.dropped.degenerate;
-                    break;
-                case TriangleFault::None:
-                    census.bounds.add(bounds_of(triangle));
-                    break;
-                }
-            }
+            for_each_triangle(chunk, uint32_t(first), uint32_t(last),
+                              [&](const Triangle& triangle) {
+                                  switch (triangle_fault(triangle)) {
+                                  case TriangleFault::NotFinite:
+                                      ++census.dropped.not_finite;
+                                      break;
+                                  case TriangleFault::Degenerate:
+                                      ++census.dropped.degenerate;
+                                      break;
+                                  case TriangleFault::None:
+                                      census.bounds.add(bounds_of(triangle));
+                                      break;
+                                  }
+                              });
             return census;
         },
         sum_of);

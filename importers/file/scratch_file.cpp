@@ -3,6 +3,8 @@
 // such files.
 #include "importers/file/scratch_file.h"
 
+#include "core/file/disk_file.h"
+
 #include <fmt/format.h>
 
 #include <cerrno>
@@ -15,8 +17,6 @@
 
 namespace ovc {
 namespace {
-
-constexpr int kEnded = -1;
 
 int open_nameless(const std::filesystem::path& folder) {
     const int descriptor = open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
@@ -65,16 +65,8 @@ bool ScratchFile::write(uint64_t offset, Bytes bytes) {
 }
 
 bool ScratchFile::read(uint64_t offset, std::span<std::byte> bytes) {
-    while (!bytes.empty()) {
-        const ssize_t done = pread(descriptor_, bytes.data(), bytes.size(), off_t(offset));
-        if (done < 0 && errno == EINTR)
-            continue;
-        if (done <= 0)
-            return fail(done < 0 ? errno : kEnded);
-        bytes = bytes.subspan(size_t(done));
-        offset += uint64_t(done);
-    }
-    return true;
+    const int failed = read_file(descriptor_, offset, bytes);
+    return failed == 0 || fail(failed);
 }
 
 std::optional<Error> ScratchFile::error() const {
@@ -82,7 +74,7 @@ std::optional<Error> ScratchFile::error() const {
     if (number == 0)
         return std::nullopt;
     return Error{fmt::format("{}: the scratch file there failed: {}", folder_.string(),
-                             number == kEnded ? "bytes are missing" : std::strerror(number))};
+                             number == kFileEnded ? "bytes are missing" : std::strerror(number))};
 }
 
 } // namespace ovc

@@ -43,7 +43,7 @@ private:
 
     std::filesystem::path folder_;
     int descriptor_;
-    std::atomic<int> error_number_{0}; // of the first failure; kEnded: bytes were missing
+    std::atomic<int> error_number_{0}; // of the first failure; or kFileEnded
 };
 
 } // namespace ovc

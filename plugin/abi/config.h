@@ -33,8 +33,13 @@ inline ovc_scene_config checked_config(const ovc_scene_config* given) {
     check_choice("level1_build", config.level1_build, OVC_LEVEL1_BUILD_BOTTOM_UP);
     check_choice("tell_active", config.tell_active, 1);
     check_choice("reserved", config.reserved, 0);
-    if (!config.saved && config.saved_bytes)
+    if (!config.saved && config.saved_bytes && !config.read_saved)
         invalid("ovc_scene_config.saved is NULL, but saved_bytes is not 0");
+    if (config.host_memory_bytes && (!config.read_saved || config.saved))
+        invalid("ovc_scene_config.host_memory_bytes is not 0, but read_saved is NULL or saved is "
+                "not: such a scene is read from what was saved");
+    if (config.read_saved && !config.host_memory_bytes)
+        invalid("ovc_scene_config.read_saved is set, but host_memory_bytes is 0");
     return config;
 }
 

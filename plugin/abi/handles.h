@@ -16,6 +16,7 @@
 #include "plugin/abi/float_mode.h"
 #include "plugin/abi/host_function.h"
 #include "plugin/abi/submissions.h"
+#include "plugin/leaf_store/leaf_store.h"
 #include "plugin/overcast.h"
 #include "plugin/structure/failure.h"
 #include "plugin/structure/single_rays.h"
@@ -31,6 +32,7 @@
 #include <string>
 #include <system_error>
 #include <thread>
+#include <tuple>
 
 namespace ovc {
 
@@ -73,6 +75,10 @@ inline constexpr uint32_t kDestroyed = 0x6f766300;
 
 class RayStream;
 
+/// What reads a mesh's corners: the host's function and its user, how many triangles there are, and
+/// whether corners are doubles. Meshes of the same one show the same corners, as instances do.
+using CornerReader = std::tuple<ovc_read_corners_function, void*, uint64_t, uint32_t>;
+
 /// Whose corners a chunk has.
 struct MeshSource {
     uint32_t mesh;          // its own number for a mesh; kNone once it is removed
@@ -104,6 +110,8 @@ struct ovc_scene_t {
     ovc_device device = nullptr;
     ovc::Turn turn; // calls on one scene wait here
     ovc_scene_config config{sizeof(ovc_scene_config)};
+    std::unique_ptr<ovc::LeafStore> store; // of a scene that need not fit into host memory
+    std::map<ovc::CornerReader, const ovc::StoredCorners*> stored; // the store's meshes
     ovc::Soup soup;
     /// By number: chunks that no ray hits themselves; the soup has an empty one in their place.
     std::map<uint32_t, ovc::Chunk> templates;

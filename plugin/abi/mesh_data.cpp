@@ -13,6 +13,14 @@ namespace ovc {
 namespace {
 
 void check_positions(const ovc_mesh& mesh) {
+    if (mesh.read_corners) {
+        if (mesh.positions || mesh.positions_double || mesh.indices || mesh.vertex_count ||
+            mesh.flags & OVC_MESH_SHARED)
+            invalid(
+                "ovc_mesh.read_corners is set: expected no positions, indices, vertex_count and "
+                "OVC_MESH_SHARED");
+        return;
+    }
     if (mesh.positions && mesh.positions_double)
         invalid("ovc_mesh.positions and positions_double are both set; one says it all");
     if (!mesh.positions && !mesh.positions_double && mesh.vertex_count)
@@ -36,7 +44,8 @@ void check_counts(const ovc_mesh& mesh) {
         invalid(format_text("ovc_mesh.vertex_count is {} without indices, expected a multiple of 3",
                             mesh.vertex_count));
     const uint64_t triangles = triangles_of(mesh);
-    if (!mesh.indices && mesh.triangle_count && mesh.triangle_count != triangles)
+    if (!mesh.indices && !mesh.read_corners && mesh.triangle_count &&
+        mesh.triangle_count != triangles)
         invalid(
             format_text("ovc_mesh.triangle_count is {}, but {} vertices without indices make {}",
                         mesh.triangle_count, mesh.vertex_count, triangles));
@@ -67,7 +76,7 @@ std::vector<Corner> corners_at(const ovc_mesh& mesh, const void* positions) {
 } // namespace
 
 uint64_t triangles_of(const ovc_mesh& mesh) {
-    return mesh.indices ? mesh.triangle_count : mesh.vertex_count / 3;
+    return mesh.indices || mesh.read_corners ? mesh.triangle_count : mesh.vertex_count / 3;
 }
 
 ovc_mesh checked(const ovc_mesh* given) {
@@ -77,7 +86,7 @@ ovc_mesh checked(const ovc_mesh* given) {
         mesh.stride = packed;
     check_positions(mesh);
     if (mesh.flags & ~uint32_t(OVC_MESH_SHARED | OVC_MESH_TEMPLATE | OVC_MESH_MOVES) ||
-        mesh.reserved || mesh.reserved1)
+        mesh.reserved || mesh.reserved1 || mesh.reads_doubles > 1 || mesh.reserved2)
         invalid("ovc_mesh.flags or reserved has bits that this version does not know");
     check_counts(mesh);
     if ((mesh.flags & OVC_MESH_SHARED) && (mesh.stride != packed || mesh.indices))

@@ -12,6 +12,21 @@
 namespace ovc {
 namespace {
 
+/// Returns a chunk whose corners the host reads.
+Chunk stored_chunk_of(ovc_scene scene, const ovc_mesh& mesh) {
+    const StoredCorners*& corners =
+        scene->stored[{mesh.read_corners, mesh.read_user, mesh.triangle_count, mesh.reads_doubles}];
+    const auto read = [function = mesh.read_corners,
+                       user = mesh.read_user](uint64_t first, uint64_t count, void* to) {
+        const HostFunction mark;
+        return function(user, first, count, to) == 0;
+    };
+    if (!corners)
+        corners = &scene->store->add_mesh(mesh.triangle_count, mesh.reads_doubles == 1, read);
+    return Chunk::stored({mesh.origin[0], mesh.origin[1], mesh.origin[2]}, *corners,
+                         uint32_t(mesh.triangle_count));
+}
+
 Chunk chunk_of(const ovc_mesh& mesh) {
     const dvec3 origin(mesh.origin[0], mesh.origin[1], mesh.origin[2]);
     const size_t count = mesh.vertex_count;
@@ -28,6 +43,9 @@ Chunk chunk_of(const ovc_mesh& mesh) {
 /// through the scene from now on until the next commit.
 Changes& begin_change(ovc_scene scene) {
     assert(scene->structure);
+    if (scene->store)
+        throw Failure{OVC_ERROR_INVALID_STATE,
+                      "a scene with host_memory_bytes cannot change after commit"};
     if (!scene->changes.any())
         scene->single_rays.serve(nullptr);
     return scene->changes;
@@ -109,7 +127,10 @@ ovc_result add_mesh(ovc_scene scene, const ovc_mesh* given, uint32_t* mesh_id) {
             invalid("add_mesh: mesh is NULL");
         const ovc_mesh mesh = checked(given);
         const auto transform = transform_of("ovc_mesh.transform", mesh.transform);
-        Chunk chunk = chunk_of(mesh);
+        if (triangles_of(mesh) > 0 && !mesh.read_corners != !scene->store)
+            invalid("add_mesh: ovc_mesh.read_corners goes with ovc_scene_config.host_memory_bytes: "
+                    "all meshes of such a scene have it, and no others");
+        Chunk chunk = mesh.read_corners ? stored_chunk_of(scene, mesh) : chunk_of(mesh);
         if (transform)
             chunk.place(*transform);
         chunk.set_mask(mesh.mask);

@@ -36,13 +36,26 @@ bool update(ovc_scene_t& scene, BuildProgress* progress) {
 
 void build(ovc_scene_t& scene, BuildProgress* progress) {
     Result<std::unique_ptr<Structure>> built =
-        make_structure(scene.soup, *scene.device->gl, scene.config, scene.device->log, progress);
+        make_structure(scene.soup, *scene.device->gl, scene.config, scene.device->log, progress,
+                       scene.store.get());
     check(built);
     if (progress)
         progress->finish(); // as in update()
     scene.structure = std::move(*built);
     scene.config.saved = nullptr; // the meshes may change now
     scene.config.saved_bytes = 0;
+}
+
+/// Returns the store of a scene that is read from a disk; null for one in memory.
+std::unique_ptr<LeafStore> store_of(const ovc_scene_config& config) {
+    if (!config.host_memory_bytes)
+        return nullptr;
+    const auto read = [function = config.read_saved,
+                       user = config.read_user](uint64_t offset, std::span<std::byte> to) {
+        const HostFunction mark;
+        return function(user, offset, to.data(), to.size()) == 0;
+    };
+    return std::make_unique<LeafStore>(config.host_memory_bytes, read, config.saved_bytes);
 }
 
 uint64_t soup_bytes(const ovc_scene_t& scene) {
@@ -66,6 +79,7 @@ ovc_result create_scene(ovc_device device, const ovc_scene_config* config, ovc_s
         created->config = checked_config(config);
         // A config that no scene can have is refused now, before anything is added.
         check_config(created->config, device->gl->info());
+        created->store = store_of(created->config);
         ++device->scenes;
         *scene = created.release();
     });
@@ -101,6 +115,8 @@ ovc_result plan(ovc_scene scene, ovc_plan* plan) {
     return on_scene(scene, "plan", [&] {
         if (!plan)
             invalid("plan: plan is NULL");
+        if (scene->store)
+            invalid("plan: what was saved is built already");
         check_size<ovc_plan>("ovc_plan", plan->struct_size, sizeof(ovc_plan));
         const Stopwatch watch;
         with_progress(scene->config, "plan", [&](BuildProgress* progress) {
@@ -171,6 +187,8 @@ void destroy_scene(ovc_scene scene) {
         scene->structure.reset();
         scene->soup = {};
         scene->templates.clear();
+        scene->stored.clear();
+        scene->store.reset();
     }
     scene->calls.wait_until_none(); // those that waited for their turn still use the device
     device->destroyed.add(std::unique_ptr<ovc_scene_t>(scene));

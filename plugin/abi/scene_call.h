@@ -114,6 +114,8 @@ inline ovc_result code_of(ErrorKind kind, ovc_result otherwise) {
         return OVC_ERROR_DEVICE_LOST;
     case ErrorKind::Cancelled:
         return OVC_ERROR_CANCELLED;
+    case ErrorKind::Unreadable:
+        return OVC_ERROR_UNREADABLE;
     case ErrorKind::Other:
         break;
     }

@@ -30,7 +30,9 @@ bool add_tree(BuiltScene& scene, const TwoLevelOptions& options, const MemoryPla
     const size_t pages = scene.pages.size();
     if (pages == 0)
         return true; // every ray misses
-    const size_t links = max_links(pages, scene.level2_bytes(), plan.pool_bytes);
+    // The tree opens no more than the roots of pages on a disk.
+    const size_t links =
+        scene.store ? pages : max_links(pages, scene.level2_bytes(), plan.pool_bytes);
     const auto is_fine = [&] {
         return scene.top.table_bytes() <= plan.buffer_bytes &&
                is_usable(scene.top, scene.pages,
@@ -139,9 +141,31 @@ Result<BuiltScene> built(const Soup& soup, const TwoLevelOptions& options, const
 
 } // namespace
 
+/// Returns the scene that options.store reads.
+static Result<BuiltScene> stored(const Soup& soup, const TwoLevelOptions& options,
+                                 const MemoryPlan& plan) {
+    Result<BuiltScene> scene = open_stored_levels(*options.store, soup);
+    if (!scene && scene.error().kind != ErrorKind::OverBudget)
+        return Error{"what was saved " + scene.error().message, ErrorKind::Unreadable};
+    if (!scene)
+        return scene;
+    set_limits(*scene, options, plan);
+    if (!add_tree(*scene, options, plan))
+        return over_budget(format_text("the largest page that was saved takes {} bytes, for which "
+                                       "the budget of {} bytes of GPU memory has no room",
+                                       scene->largest_page_bytes(), plan.budget_bytes));
+    return scene;
+}
+
 Result<BuiltScene> build_scene(const Soup& soup, const TwoLevelOptions& options,
                                const MemoryPlan& plan, const LogSink& log,
                                BuildProgress* progress) {
+    if (options.store) {
+        Result<BuiltScene> scene = stored(soup, options, plan);
+        if (scene)
+            warn_of_dropped(scene->dropped, log);
+        return scene;
+    }
     std::optional<BuiltScene> found = restored(soup, options, plan, log);
     Result<BuiltScene> scene =
         found ? Result<BuiltScene>(std::move(*found)) : built(soup, options, plan, progress);

@@ -183,7 +183,7 @@ uint64_t BuiltScene::host_bytes() const {
     add(*this);
     for (const SharedMesh& mesh : shared)
         add(mesh.scene);
-    return bytes + level2_bytes();
+    return bytes + (store ? 0 : level2_bytes());
 }
 
 namespace {
@@ -359,7 +359,11 @@ void gather_pages(BuiltScene& scene) {
                 continue;
             mesh.first_page = uint32_t(scene.pages.size());
             for (const Page& page : mesh.scene.pages)
-                scene.pages.push_back({.texels = {}, .borrowed = page.view(), .depth = page.depth});
+                scene.pages.push_back({.texels = {},
+                                       .borrowed = page.view(),
+                                       .depth = page.depth,
+                                       .stored_bytes = page.stored_bytes,
+                                       .stored_number = page.stored_number});
         }
 }
 

@@ -64,6 +64,7 @@ private:
     bool fits(uint64_t all, double bytes_per_triangle) const;
 };
 
+class LeafStore;
 struct SharedMesh;
 
 struct BuiltScene {
@@ -89,7 +90,8 @@ struct BuiltScene {
     /// The frame and grid for pages of shared meshes that are home; those of level 1's leaves where
     /// these share one.
     std::optional<Leaf> home;
-    TopLevel top; // over the pages
+    TopLevel top;               // over the pages
+    LeafStore* store = nullptr; // where the pages lie; null: in memory
     bool from_saved = false;
     bool any_limits = false;  // LevelsKey::any_limits
     double built_overlap = 0; // of the level's own pages before the first update; 0: none yet

@@ -4,7 +4,7 @@
 #include "plugin/build/build_scene.h"
 #include "plugin/build/saved_levels.h"
 #include "plugin/build/update_scene.h"
-#include "plugin/two_level/exact_fallback.h"
+#include "plugin/fallback/exact_fallback.h"
 
 #include "core/file/test_archive.h"
 #include "kdtree/test_soups.h"

@@ -4,6 +4,7 @@
 
 #include "core/system/parallel.h"
 #include "core/system/stopwatch.h"
+#include "gpu/bvh/bvh.h"
 #include "gpu/page/page_check.h"
 #include "plugin/plan/page_rate.h"
 #include "shaders/layout.h"
@@ -13,6 +14,9 @@
 #include <atomic>
 #include <cassert>
 #include <cmath>
+#include <mutex>
+#include <optional>
+#include <utility>
 
 namespace ovc {
 namespace {
@@ -20,7 +24,7 @@ namespace {
 constexpr std::string_view kKind = "ovc levels";
 /// The version must be raised when a build makes other leaves or pages of the same soup. A change
 /// of layout.h is noticed without that.
-constexpr uint32_t kVersion = 10;
+constexpr uint32_t kVersion = 11;
 
 /// A build makes the same levels where all of its key is the same.
 struct Key {
@@ -57,20 +61,6 @@ uint64_t checksum_of_layout() {
         if (source.name == "layout.h")
             return checksum_of(bytes_of(std::span<const char>(source.text)));
     return 0;
-}
-
-uint64_t checksum_of_soup(const Soup& soup) {
-    Checksum sum;
-    for (const Chunk& chunk : soup.chunks) {
-        add_chunk(sum, chunk.origin(), chunk.size());
-        sum.add(bytes_of(chunk.corners()));
-        sum.add(bytes_of(chunk.double_corners()));
-        if (chunk.moves()) // and is cut by itself
-            sum.add_value(uint64_t(1));
-        if (chunk.transform())
-            sum.add(bytes_of(std::span<const Transform>(chunk.transform(), 1)));
-    }
-    return sum.value();
 }
 
 void put_limits(Key& key, const LeafLimits& limits) {
@@ -141,7 +131,8 @@ bool are_sound(std::span<const Duplicates::Pair> pairs, const Soup& soup) {
 
 const Error kUnsound{"is damaged: what it holds are no levels"};
 
-/// The part of the arrays that is not read yet. The cuts lie one behind the other in them.
+/// The part of the arrays that is not read yet. The cuts lie one behind the other in them. Of
+/// levels on a disk there are heads of pages in place of lists and texels.
 struct Arrays {
     std::span<const Duplicates::Pair> duplicates;
     std::span<const KdNode> nodes;
@@ -149,10 +140,14 @@ struct Arrays {
     std::span<const TriangleId> lists;
     std::span<const SavedPage> pages; // one a leaf
     std::span<const uvec4> texels;
+    std::span<const uvec4> heads;
+    uint64_t stored_texels = 0; // whose heads these are
+    uint32_t stored_pages = 0;  // that were read
+    bool are_stored = false;
 
     bool all_read() const {
         return duplicates.empty() && nodes.empty() && leaves.empty() && lists.empty() &&
-               pages.empty() && texels.empty();
+               pages.empty() && texels.empty() && heads.empty() && stored_texels == 0;
     }
 };
 
@@ -193,7 +188,8 @@ private:
             return false;
         level1.nodes.assign(nodes->begin(), nodes->end());
         for (const SavedLeaf& leaf : *leaves) {
-            const auto list = take(arrays_.lists, leaf.triangles);
+            const uint64_t stored = arrays_.are_stored ? leaf.triangles : 0;
+            const auto list = take(arrays_.lists, leaf.triangles - stored);
             if (!is_sound(leaf) || !list ||
                 (level1.shares_frame && !share_frame(leaf, leaves->front())))
                 return false;
@@ -201,7 +197,8 @@ private:
                                      .box = leaf.box,
                                      .frame = {leaf.origin, leaf.scale},
                                      .grid = leaf.grid,
-                                     .borrowed = *list});
+                                     .borrowed = *list,
+                                     .stored = stored});
         }
         return true;
     }
@@ -211,6 +208,8 @@ private:
         const auto pages = take(arrays_.pages, cut_.leaves);
         if (!pages)
             return false;
+        if (arrays_.are_stored)
+            return std::ranges::all_of(*pages, [&](const auto& page) { return read_head(page); });
         for (const SavedPage& saved : *pages) {
             const auto texels = take(arrays_.texels, saved.texels);
             if (!texels || texels->empty() || saved.depth > kNone)
@@ -227,6 +226,19 @@ private:
                     walkable = false;
         });
         return walkable;
+    }
+
+    bool read_head(const SavedPage& saved) {
+        const auto head = take(arrays_.heads, kHeadTexels);
+        if (!head || saved.texels % OVC_UNIT_TEXELS || saved.texels > arrays_.stored_texels ||
+            saved.depth > kMaxBvhDepth || !is_sound_head(*head, saved.texels / OVC_UNIT_TEXELS))
+            return false;
+        arrays_.stored_texels -= saved.texels;
+        scene_.pages.push_back({.borrowed = *head,
+                                .depth = uint32_t(saved.depth),
+                                .stored_bytes = saved.texels * sizeof(uvec4),
+                                .stored_number = arrays_.stored_pages++});
+        return true;
     }
 
     const SavedCut& cut_;
@@ -253,7 +265,7 @@ Result<Arrays> arrays_of(const Archive& archive) {
     const auto texels = archive.items<uvec4>("texels");
     if (!texels)
         return texels.error();
-    return Arrays{*duplicates, *nodes, *leaves, *lists, *pages, *texels};
+    return Arrays{*duplicates, *nodes, *leaves, *lists, *pages, *texels, {}};
 }
 
 /// Whether rays can come to a mesh that was saved at rest.
@@ -268,14 +280,9 @@ bool can_rest(const SharedMesh& mesh, const Soup& soup) {
            });
 }
 
-Result<BuiltScene> restored(const Archive& archive, std::span<const SavedCut> cuts,
-                            const Soup& soup) {
-    assert(!cuts.empty());
-    Result<Arrays> arrays = arrays_of(archive);
-    if (!arrays)
-        return arrays.error();
+Result<BuiltScene> restored(Arrays arrays, std::span<const SavedCut> cuts, const Soup& soup) {
     BuiltScene scene(soup);
-    if (!CutReader(cuts.front(), *arrays, scene).read())
+    if (cuts.empty() || !CutReader(cuts.front(), arrays, scene).read())
         return kUnsound;
     Placed placed = placed_chunks(soup); // the soup alone tells which meshes are shared
     scene.once = std::move(placed.once);
@@ -287,12 +294,12 @@ Result<BuiltScene> restored(const Archive& archive, std::span<const SavedCut> cu
         const SavedCut& cut = cuts[i + 1];
         if (cut.rests)
             mesh.put_to_rest(cut.rest_place, scene.numbers.of({mesh.instances.front(), 0}));
-        if (!CutReader(cut, *arrays, mesh.scene).read() || !can_rest(mesh, soup))
+        if (!CutReader(cut, arrays, mesh.scene).read() || !can_rest(mesh, soup))
             return kUnsound;
         look_for_lines(mesh);
     }
     find_home(scene);
-    if (!arrays->all_read())
+    if (!arrays.all_read())
         return kUnsound;
     gather_pages(scene);
     return scene;
@@ -336,7 +343,7 @@ SavedCut saved_cut(const LevelsCut& of) {
 Key key_of(const LevelsKey& of) {
     Key key;
     key.layout = checksum_of_layout();
-    key.soup = of.soup;
+    key.soup = of.soup.checksum();
     if (of.any_limits)
         key.any_limits = 1;
     else
@@ -346,11 +353,6 @@ Key key_of(const LevelsKey& of) {
 
 } // namespace
 
-void add_chunk(Checksum& sum, const dvec3& origin, uint64_t triangles) {
-    sum.add(bytes_of(std::span<const dvec3>(&origin, 1)));
-    sum.add_value(triangles);
-}
-
 LevelsWriter::LevelsWriter(const ByteSink& sink) : writer_(sink, kKind, kVersion) {
     writer_.begin("texels");
 }
@@ -358,7 +360,9 @@ LevelsWriter::LevelsWriter(const ByteSink& sink) : writer_(sink, kKind, kVersion
 void LevelsWriter::add(const Leaf& leaf, const Page& page) {
     leaves_.push_back(
         {leaf.cell, leaf.box, leaf.grid, leaf.frame.origin, leaf.frame.scale, leaf.list().size()});
-    pages_.push_back({page.view().size(), page.depth});
+    pages_.push_back({page.view().size(), page.depth, checksum_of(bytes_of(page.view()))});
+    const auto head = page.view().first(kHeadTexels);
+    heads_.insert(heads_.end(), head.begin(), head.end());
     writer_.write(bytes_of(page.view()));
 }
 
@@ -385,6 +389,8 @@ bool LevelsWriter::finish(const LevelsKey& key, std::span<const LevelsCut> cuts)
         writer_.write(bytes_of(std::span<const KdNode>(cut.level1.nodes)));
     writer_.part<SavedLeaf>("leaves", leaves_);
     writer_.part<SavedPage>("pages", pages_);
+    writer_.part<uvec4>("heads", heads_);
+    writer_.part<uint64_t>("corner sums", key.soup.sums);
     return writer_.finish();
 }
 
@@ -401,7 +407,7 @@ bool save_levels(const BuiltScene& scene, const ByteSink& sink) {
         for (const Leaf& leaf : cut->level1.leaves)
             writer.add_lists(leaf.list());
     }
-    return writer.finish({checksum_of_soup(scene.soup), scene.limits, scene.any_limits}, cuts);
+    return writer.finish({corner_sums_of(scene.soup), scene.limits, scene.any_limits}, cuts);
 }
 
 Result<std::optional<BuiltScene>>
@@ -431,9 +437,12 @@ restore_levels(Bytes saved, const Soup& soup,
     if (!takes_any_limits || key.any_limits != 1)
         put_limits(key, limits);
     // The soup is compared last, because its checksum takes a while.
-    if (key != keys->front() || checksum_of_soup(soup) != key.soup)
+    if (key != keys->front() || corner_sums_of(soup).checksum() != key.soup)
         return std::optional<BuiltScene>();
-    Result<BuiltScene> scene = restored(*archive, *cuts, soup);
+    const Result<Arrays> arrays = arrays_of(*archive);
+    if (!arrays)
+        return arrays.error();
+    Result<BuiltScene> scene = restored(*arrays, *cuts, soup);
     if (!scene)
         return scene.error();
     scene->limits = limits;
@@ -441,6 +450,160 @@ restore_levels(Bytes saved, const Soup& soup,
     scene->any_limits = key.any_limits == 1;
     scene->seconds_level1 = watch.seconds();
     return std::optional(std::move(*scene));
+}
+
+namespace {
+
+/// The tables of levels on a disk.
+struct StoredTables {
+    std::vector<SavedCut> cuts;
+    std::vector<Duplicates::Pair> duplicates;
+    std::vector<KdNode> nodes;
+    std::vector<SavedLeaf> leaves;
+    std::vector<SavedPage> pages;
+    std::vector<uvec4> heads;
+    std::vector<uint64_t> sums;
+
+    /// Returns about how many bytes a scene with these keeps in memory: a leaf has its page, its
+    /// place in the pool and its part of the top-level tree.
+    uint64_t bytes() const {
+        constexpr uint64_t kBytesALeaf = 1024;
+        return leaves.size() * kBytesALeaf + nodes.size() * sizeof(KdNode) +
+               duplicates.size() * sizeof(Duplicates::Pair);
+    }
+};
+
+Result<StoredTables> read_tables(const StoredArchive& archive) {
+    StoredTables tables;
+    Result<Done> done = Done{};
+    const auto read = [&]<class T>(std::string_view name, std::vector<T>& to, uint64_t count) {
+        if (!done)
+            return;
+        Result<std::vector<T>> items = archive.items<T>(name, count);
+        if (items)
+            to = std::move(*items);
+        else
+            done = items.error();
+    };
+    constexpr uint64_t kAny = ~uint64_t(0);
+    read("cuts", tables.cuts, kAny);
+    read("twins", tables.duplicates, kAny);
+    read("nodes", tables.nodes, kAny);
+    read("leaves", tables.leaves, kAny);
+    read("pages", tables.pages, tables.leaves.size());
+    read("heads", tables.heads, tables.leaves.size() * kHeadTexels);
+    read("corner sums", tables.sums, kAny);
+    return done ? Result<StoredTables>(std::move(tables)) : done.error();
+}
+
+/// Checks that the levels were made of such meshes, by such a library. sums: receives those of the
+/// meshes' corners, none of which is read.
+Result<Done> check_key(const StoredArchive& archive, const StoredTables& tables, const Soup& soup,
+                       CornerSums& sums) {
+    const auto keys = archive.items<Key>("key", 1);
+    if (!keys)
+        return keys.error();
+    if (keys->front().layout != checksum_of_layout())
+        return Error{"is of another version of the library"};
+    sums = unsummed(soup);
+    if (sums.sums.size() != tables.sums.size())
+        return Error{"is of other meshes"};
+    sums.sums = tables.sums;
+    if (sums.checksum() != keys->front().soup)
+        return Error{"is of other meshes"};
+    return Done{};
+}
+
+/// Tells whether pages that are read from a disk may be walked.
+class StoredPageCheck {
+public:
+    StoredPageCheck(const BuiltScene& scene, std::span<const Page> pages) {
+        const auto add = [&](const BuiltScene& cut) {
+            const Part part{uint32_t(cut.soup.triangle_count()), cut.numbers.first()};
+            parts_.insert(parts_.end(), cut.level1.leaves.size(), part);
+        };
+        add(scene);
+        for (const SharedMesh& mesh : scene.shared)
+            add(mesh.scene);
+        heads_.resize(parts_.size());
+        for (const Page& page : pages)
+            heads_[page.stored_number] = {page.view(), page.depth};
+    }
+
+    bool operator()(uint32_t number, std::span<const uvec4> texels) const {
+        const Head& head = heads_[number];
+        const Part& part = parts_[number];
+        const Page page{.texels = {}, .borrowed = texels, .depth = head.depth};
+        return std::ranges::equal(head.texels, texels.first(kHeadTexels)) &&
+               is_walkable(page, part.triangles, part.first_number);
+    }
+
+private:
+    struct Part {
+        uint32_t triangles = 0;
+        uint32_t first_number = 0;
+    };
+    struct Head {
+        std::span<const uvec4> texels;
+        uint32_t depth = 0;
+    };
+
+    std::vector<Part> parts_; // of each page, in the order that they were saved
+    std::vector<Head> heads_;
+};
+
+Result<BuiltScene> open_levels(LeafStore& store, const Soup& soup) {
+    const Stopwatch watch;
+    const Result<StoredArchive> archive =
+        StoredArchive::open(store.read(), store.saved_bytes(), kKind, kVersion);
+    if (!archive)
+        return archive.error();
+    Result<StoredTables> tables = read_tables(*archive);
+    if (!tables)
+        return tables.error();
+    CornerSums sums;
+    if (const Result<Done> fits = check_key(*archive, *tables, soup, sums); !fits)
+        return fits.error();
+    const ArchivePart texels = archive->place("texels");
+    std::vector<PagePlace> places;
+    uint64_t offset = texels.offset;
+    for (const SavedPage& page : tables->pages) {
+        const uint64_t bytes = std::min(page.texels, texels.bytes) * sizeof(uvec4);
+        places.push_back({offset, bytes, page.checksum});
+        offset += bytes;
+    }
+    const uint64_t bytes = tables->bytes();
+    const std::span<const uvec4> heads = store.keep_heads(std::move(tables->heads));
+    store.set_sums(sums);
+    Arrays arrays{tables->duplicates, tables->nodes, tables->leaves, {}, tables->pages, {}, heads};
+    arrays.stored_texels = texels.bytes / sizeof(uvec4);
+    arrays.are_stored = true;
+    Result<BuiltScene> scene = restored(arrays, tables->cuts, soup);
+    if (!scene)
+        return scene.error();
+    if (const Result<Done> opened =
+            store.open(std::move(places), StoredPageCheck(*scene, scene->pages), bytes);
+        !opened)
+        return opened.error();
+    scene->store = &store;
+    scene->from_saved = true;
+    scene->seconds_level1 = watch.seconds();
+    return scene;
+}
+
+} // namespace
+
+Result<BuiltScene> open_stored_levels(LeafStore& store, const Soup& soup) {
+    std::mutex mutex;
+    std::optional<Error> failed; // corners of instances are looked at
+    store.on_failure([&](Error error) {
+        const std::lock_guard lock(mutex);
+        if (!failed)
+            failed = std::move(error);
+    });
+    Result<BuiltScene> scene = open_levels(store, soup);
+    store.on_failure({});
+    return failed ? std::move(*failed) : std::move(scene);
 }
 
 } // namespace ovc

@@ -7,6 +7,8 @@
 #include "core/file/checksum.h"
 #include "core/result.h"
 #include "plugin/build/built_scene.h"
+#include "plugin/leaf_store/corner_sums.h"
+#include "plugin/leaf_store/leaf_store.h"
 
 #include <functional>
 #include <optional>
@@ -28,16 +30,12 @@ struct LevelsCut {
 
 /// Decides whether a later scene may take levels.
 struct LevelsKey {
-    uint64_t soup = 0;   // checksum of origins and corners
+    const CornerSums& soup;
     LeafLimits limits{}; // unless any_limits
     /// Whether levels are good under other limits too, where the host asks for none itself: it
     /// takes longer to build them again than leaves of another size save.
     bool any_limits = false;
 };
-
-/// Adds the beginning of a chunk to the checksum of a soup (LevelsKey). Its corners, as they lie in
-/// memory, are added next.
-void add_chunk(Checksum& sum, const dvec3& origin, uint64_t triangles);
 
 /// A leaf as it is saved.
 struct SavedLeaf {
@@ -53,6 +51,7 @@ static_assert(sizeof(SavedLeaf) == 23 * 8);
 struct SavedPage {
     uint64_t texels = 0;
     uint64_t depth = 0;
+    uint64_t checksum = 0; // so that the page can be read by itself
 };
 
 /// Writes saved levels leaf by leaf, so that nobody need hold all of them.
@@ -74,6 +73,7 @@ private:
     ArchiveWriter writer_;
     std::vector<SavedLeaf> leaves_;
     std::vector<SavedPage> pages_;
+    std::vector<uvec4> heads_;
 };
 
 /// Passes the scene on to the sink, front to back. Returns false where the sink wanted no more.
@@ -89,5 +89,10 @@ Result<std::optional<BuiltScene>>
 restore_levels(Bytes saved, const Soup& soup,
                const std::function<LeafLimits(uint64_t, uint64_t)>& limits_for,
                bool takes_any_limits = false);
+
+/// Opens the levels that the store reads, for a soup of the store's meshes. Pages and lists stay on
+/// the disk, and limits do not matter. Error: as of restore_levels(); they are of other meshes; or
+/// of the kind OverBudget, where it names the smallest budget of the store that works.
+Result<BuiltScene> open_stored_levels(LeafStore& store, const Soup& soup);
 
 } // namespace ovc

@@ -26,11 +26,12 @@ Box bounds_of(const Chunk& mesh) {
     const Found all = parallel_reduce(
         mesh.size(), Found(),
         [&](size_t first, size_t last, Found found) {
-            for (size_t prim = first; prim < last; ++prim)
-                for (const dvec3& corner : mesh.triangle(uint32_t(prim))) {
+            for_each_triangle(mesh, uint32_t(first), uint32_t(last), [&](const Triangle& triangle) {
+                for (const dvec3& corner : triangle) {
                     found.is_finite &= is_finite(corner);
                     found.box.add(corner);
                 }
+            });
             return found;
         },
         [](Found a, const Found& b) {

@@ -3,9 +3,7 @@
 #include "plugin/out_of_core/source_survey.h"
 
 #include "core/corner_hash.h"
-#include "core/file/checksum.h"
 #include "core/system/parallel.h"
-#include "plugin/build/saved_levels.h"
 #include "plugin/out_of_core/source_blocks.h"
 
 #include <vector>
@@ -13,35 +11,25 @@
 namespace ovc {
 namespace {
 
-/// The checksum of a soup that comes in blocks.
-class BlockChecksum {
-public:
-    explicit BlockChecksum(std::span<const SourceMesh> meshes) : meshes_(meshes) {}
+static_assert(kBlockTriangles % kCornerBlock == 0);
 
-    void add(const SourceBlock& block) {
-        begin_up_to(block.mesh + 1);
-        sum_.add(block.corners);
+/// Returns the meshes of a source, without sums.
+CornerSums unsummed(std::span<const SourceMesh> meshes) {
+    CornerSums found;
+    uint64_t blocks = 0;
+    for (const SourceMesh& mesh : meshes) {
+        found.meshes.push_back({mesh.origin, mesh.triangles, blocks});
+        blocks += corner_blocks(mesh.triangles);
     }
-    uint64_t finish() {
-        begin_up_to(meshes_.size());
-        return sum_.value();
-    }
-
-private:
-    void begin_up_to(size_t end) {
-        for (; begun_ < end; ++begun_)
-            add_chunk(sum_, meshes_[begun_].origin, meshes_[begun_].triangles);
-    }
-
-    std::span<const SourceMesh> meshes_;
-    size_t begun_ = 0;
-    Checksum sum_;
-};
+    found.sums.reserve(blocks);
+    return found;
+}
 
 /// What is found in one block.
 struct BlockSurvey {
     Survey found;
     std::vector<uint32_t> drawn; // in the block
+    std::vector<uint64_t> sums;
 };
 
 BlockSurvey look_at(const SourceBlock& block, const SourceMesh& mesh, uint32_t rate,
@@ -53,6 +41,8 @@ BlockSurvey look_at(const SourceBlock& block, const SourceMesh& mesh, uint32_t r
     for (uint32_t i = 0; i < block.count; ++i)
         if (is_hit[i] && (triangle_hash(chunk.triangle(i)) & (rate - 1)) == 0)
             result.drawn.push_back(i);
+    result.sums.resize(corner_blocks(block.count));
+    sum_blocks(block.corners, mesh.triangle_bytes(), result.sums);
     return result;
 }
 
@@ -60,29 +50,22 @@ BlockSurvey look_at(const SourceBlock& block, const SourceMesh& mesh, uint32_t r
 
 SourceSurvey survey_source(TriangleSource& source, uint32_t rate, BuildProgress* progress) {
     const std::span<const SourceMesh> meshes = source.meshes();
-    SourceSurvey total{.sample = LocalSoup(meshes)};
-    BlockChecksum checksum(meshes);
+    SourceSurvey total{.sums = unsummed(meshes), .sample = LocalSoup(meshes)};
     for_each_blocks(source, [&](std::span<const SourceBlock> blocks) {
         std::vector<BlockSurvey> parts(blocks.size());
-        const auto look = [&] {
-            parallel_for(blocks.size(), 1, [&](size_t first, size_t last) {
-                for (size_t b = first; b < last; ++b)
-                    parts[b] = look_at(blocks[b], meshes[blocks[b].mesh], rate, progress);
-            });
-        };
-        const auto add_up = [&] {
-            for (const SourceBlock& block : blocks)
-                checksum.add(block);
-        };
-        parallel_invoke(look, add_up);
+        parallel_for(blocks.size(), 1, [&](size_t first, size_t last) {
+            for (size_t b = first; b < last; ++b)
+                parts[b] = look_at(blocks[b], meshes[blocks[b].mesh], rate, progress);
+        });
         for (size_t b = 0; b < blocks.size(); ++b) {
             total.triangles += blocks[b].count;
             total.found.add(parts[b].found);
+            total.sums.sums.insert(total.sums.sums.end(), parts[b].sums.begin(),
+                                   parts[b].sums.end());
             for (const uint32_t i : parts[b].drawn)
                 total.sample.add(blocks[b].id(i), blocks[b].corners_of(i));
         }
     });
-    total.checksum = checksum.finish();
     total.sample.finish();
     return total;
 }

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // survey_source() goes through all triangles of a source once: it counts them, finds the box around
-// them and their checksum, and draws a sample.
+// them and the checksums of their corners, and draws a sample.
 #pragma once
 
 #include "core/build_progress.h"
 #include "core/soup.h"
+#include "plugin/leaf_store/corner_sums.h"
 #include "plugin/out_of_core/local_soup.h"
 #include "plugin/structure/triangle_source.h"
 
@@ -15,8 +16,8 @@ namespace ovc {
 struct SourceSurvey {
     uint64_t triangles = 0; // whether they can be hit or not
     Survey found;
-    uint64_t checksum = 0; // as LevelsKey::soup
-    LocalSoup sample;      // as sample_triangles() draws it of those that can be hit
+    CornerSums sums;
+    LocalSoup sample; // as sample_triangles() draws it of those that can be hit
 
     uint64_t hittable() const { return triangles - found.dropped.total(); }
 };

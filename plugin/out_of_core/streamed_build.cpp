@@ -83,8 +83,8 @@ public:
                 return built.error();
         }
         level1_.bounds = surveyed.found.bounds;
-        return levels_.finish({surveyed.checksum, {}, /* any_limits= */ true},
-                              surveyed.found.dropped, hittable_, std::move(level1_), planes_);
+        return levels_.finish({surveyed.sums, {}, /* any_limits= */ true}, surveyed.found.dropped,
+                              hittable_, std::move(level1_), planes_);
     }
 
 private:

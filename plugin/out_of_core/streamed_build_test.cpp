@@ -9,8 +9,8 @@
 #include "plugin/build/build_scene.h"
 #include "plugin/build/same_levels_test.h"
 #include "plugin/build/saved_levels.h"
+#include "plugin/fallback/exact_fallback.h"
 #include "plugin/out_of_core/test_source.h"
-#include "plugin/two_level/exact_fallback.h"
 
 #include <gtest/gtest.h>
 
@@ -216,9 +216,12 @@ TEST_F(StreamedBuild, EndsWhereAFunctionOfItsCallerFails) {
     const ByteSink full = [&](Bytes) { return ++writes < 3; };
     EXPECT_THROW((void)stream_levels({source, scratch, kSmall}, {}, plan, full), Cancelled);
     EXPECT_EQ(writes, 3);
-    BuildProgress stops([&](double done, const char*) { return done < 0.5; });
+    // Progress is asked every twentieth of a second or so, within which a small soup is built.
+    const Soup large = test::closed_grid(300);
+    SoupSource much(large);
+    BuildProgress stops([&](double done, const char*) { return done < 0.3; });
     const ByteSink any = [](Bytes) { return true; };
-    EXPECT_THROW((void)stream_levels({source, scratch, kSmall}, {}, plan, any, &stops), Cancelled);
+    EXPECT_THROW((void)stream_levels({much, scratch, kSmall}, {}, plan, any, &stops), Cancelled);
 }
 
 } // namespace

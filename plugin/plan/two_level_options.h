@@ -25,6 +25,7 @@ struct TwoLevelOptions {
     std::optional<bool> beside;
     uint64_t driver_bytes = ~uint64_t(0); // for tests: as in MemoryPlan
     uint64_t buffer_bytes = 0;            // for tests: as in plan_memory()
+    LeafStore* store = nullptr;           // reads what was saved, in place of the next
     Bytes saved = {}; // from save() of a structure over the same soup; outlives this one
 };
 

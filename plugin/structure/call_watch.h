@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// CallWatch: asks, while a call traces rays, whether it is to go on or is cancelled.
+// CallWatch: asks, while a call traces rays, whether it is to go on, is cancelled or has failed.
 #pragma once
 
 #include "core/result.h"
@@ -8,7 +8,10 @@
 #include <atomic>
 #include <cassert>
 #include <cstddef>
+#include <mutex>
+#include <optional>
 #include <thread>
+#include <utility>
 
 namespace ovc {
 
@@ -46,6 +49,20 @@ public:
 
     bool is_watched() const { return watch_ != nullptr; }
 
+    /// Forgets what failed in an earlier call.
+    void begin_call() {
+        const std::lock_guard lock(mutex_);
+        failure_.reset();
+        has_failed_ = false;
+    }
+    /// Ends the call under way with this error, or with one before it. Any thread.
+    void fail(Error error) {
+        const std::lock_guard lock(mutex_);
+        if (!failure_)
+            failure_ = std::move(error);
+        has_failed_ = true;
+    }
+
     /// Begins part `part` of `parts` of the call, each of which traces rays.
     void begin_part(size_t part, size_t parts) {
         assert(part < parts);
@@ -53,24 +70,30 @@ public:
         part_length_ = 1 / double(parts);
     }
     /// Tells the watch, between passes, how many of the part's rays (> 0) are answered. Error of
-    /// the kind Cancelled: the call is to end.
+    /// the kind Cancelled: the call is to end. Other errors: it has failed.
     Result<Done> go_on(size_t answered, size_t rays) {
         assert(answered <= rays && rays > 0);
         share_ = std::max(share_, part_begin_ + part_length_ * double(answered) / double(rays));
         keeps_on();
         return unless_cancelled();
     }
-    /// Returns an error of the kind Cancelled where the call is cancelled. Calls end with this,
-    /// because the answers of a cancelled call are incomplete.
+    /// Returns an error where the call has failed, and one of the kind Cancelled where it is
+    /// cancelled. Calls end with this, because the answers of such a call are incomplete.
     Result<Done> unless_cancelled() const {
+        if (has_failed_) {
+            const std::lock_guard lock(mutex_);
+            return *failure_;
+        }
         if (watch_ && cancelled_)
             return Error{"cancelled", ErrorKind::Cancelled};
         return Done{};
     }
     /// Asks the watch within a pass, wherever something may take long. Returns false where the call
-    /// is cancelled and work on it is in vain; the watch is not asked again then. Any thread; those
-    /// without the Scope only look up the answer.
+    /// is cancelled or has failed, and work on it is in vain; the watch is not asked again then.
+    /// Any thread; those without the Scope only look up the answer.
     bool keeps_on() const {
+        if (has_failed_)
+            return false;
         if (!watch_)
             return true;
         const bool asks = !cancelled_ && thread_ == std::this_thread::get_id();
@@ -86,6 +109,9 @@ private:
     double part_begin_ = 0;
     double part_length_ = 1;
     mutable std::atomic<bool> cancelled_{false};
+    std::atomic<bool> has_failed_{false};
+    mutable std::mutex mutex_; // guards the next
+    std::optional<Error> failure_;
 };
 
 } // namespace ovc

@@ -30,5 +30,18 @@ TEST(CallWatch, AsksNobodyWhereThereIsNoWatch) {
     EXPECT_TRUE(call.go_on(1, 2));
 }
 
+TEST(CallWatch, AFailureEndsTheCallAndIsForgottenByTheNext) {
+    CallWatch call;
+    EXPECT_TRUE(call.keeps_on());
+    call.fail({"the first", ErrorKind::Unreadable});
+    call.fail({"the second", ErrorKind::Other});
+    EXPECT_FALSE(call.keeps_on());
+    EXPECT_EQ(call.unless_cancelled().error().message, "the first");
+    EXPECT_EQ(call.go_on(0, 1).error().kind, ErrorKind::Unreadable);
+    call.begin_call();
+    EXPECT_TRUE(call.keeps_on());
+    EXPECT_TRUE(call.unless_cancelled());
+}
+
 } // namespace
 } // namespace ovc

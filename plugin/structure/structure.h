@@ -25,6 +25,8 @@
 
 namespace ovc {
 
+class LeafStore;
+
 /// Answers rays through a soup. It takes one call at a time, except where a function says
 /// otherwise.
 class Structure {
@@ -101,12 +103,12 @@ protected:
 void check_config(const ovc_scene_config& config, const DeviceInfo& device);
 
 /// Builds the structure that the config asks for, which check_config() has let pass. The soup and
-/// the thread must outlive it. Error: the budget is too small, with the smallest that works, or GL
-/// refuses something. Throws Cancelled when `progress` is told to stop.
-Result<std::unique_ptr<Structure>> make_structure(const Soup& soup, GlThread& gl,
-                                                  const ovc_scene_config& config,
-                                                  const LogSink& log,
-                                                  BuildProgress* progress = nullptr);
+/// the thread must outlive it, and so must the store, which reads a scene that lies on a disk.
+/// Error: the budget is too small, with the smallest that works, or GL refuses something. Throws
+/// Cancelled when `progress` is told to stop.
+Result<std::unique_ptr<Structure>>
+make_structure(const Soup& soup, GlThread& gl, const ovc_scene_config& config, const LogSink& log,
+               BuildProgress* progress = nullptr, LeafStore* store = nullptr);
 
 /// Writes to the sink what save() of such a structure over the scene's meshes would, within the
 /// scene's host memory. Throws as make_structure() does, and Cancelled where a function of the

@@ -5,9 +5,9 @@
 
 #include "core/system/parallel.h"
 #include "core/system/stopwatch.h"
+#include "plugin/fallback/exact_fallback.h"
 #include "plugin/thesis/queued/hittable.h"
 #include "plugin/two_level/candidates.h"
-#include "plugin/two_level/exact_fallback.h"
 #include "shaders/layout.h"
 
 #include <algorithm>

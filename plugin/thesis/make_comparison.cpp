@@ -6,6 +6,8 @@
 #include "plugin/thesis/comparison.h"
 #include "plugin/thesis/queued/queued_two_level.h"
 
+#include <cassert>
+
 namespace ovc {
 namespace {
 
@@ -39,6 +41,10 @@ void check_config(const ovc_scene_config& config, const DeviceInfo& device) {
         refuse(format_text("{} shares no budget: ovc_device_config.gpu_memory_bytes is {}, "
                            "expected 0",
                            name, device.shared_budget_bytes));
+    if (config.host_memory_bytes)
+        refuse(format_text("{} is not saved, so that it cannot be read: host_memory_bytes is {}, "
+                           "expected 0",
+                           name, config.host_memory_bytes));
     if (config.tell_active)
         refuse(format_text("{} does not tell which pages are active", name));
     if (config.kernel == OVC_KERNEL_COMPUTE)
@@ -80,7 +86,9 @@ Result<Done> save_structure(const StreamedScene&, const DeviceInfo&, const ovc_s
 
 Result<std::unique_ptr<Structure>> make_structure(const Soup& soup, GlThread& gl,
                                                   const ovc_scene_config& config,
-                                                  const LogSink& log, BuildProgress* progress) {
+                                                  const LogSink& log, BuildProgress* progress,
+                                                  [[maybe_unused]] LeafStore* store) {
+    assert(!store);
     if (config.structure == OVC_STRUCTURE_THESIS_TWO_LEVEL)
         return make_queued(soup, gl, config, log, progress);
     thesis::RunnerOptions options;

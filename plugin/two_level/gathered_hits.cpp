@@ -4,8 +4,8 @@
 #include "plugin/two_level/gathered_hits.h"
 
 #include "core/exact/refined.h"
-#include "gpu/page/page_walk.h"
 #include "kdtree/approach.h"
+#include "plugin/fallback/scene_walk.h"
 
 #include <algorithm>
 #include <optional>
@@ -16,16 +16,13 @@ namespace {
 /// Returns the numbers of all triangles that the ray may meet, each once.
 std::vector<uint32_t> numbers_near(const BuiltScene& scene, const PreparedRay& p) {
     std::vector<uint32_t> numbers;
-    if (scene.pages.empty())
-        return numbers;
     const Nearest nothing(p);
     const Approach approach(p, scene.level1.bounds);
     const auto note = [&](uint32_t number) {
         numbers.push_back(number);
         return false;
     };
-    walk_tree(scene.top, scene.pages, scene_leaf(scene.level1.bounds), approach.ray(), note,
-              [&] { return approach.limit(nothing); });
+    walk_scene(scene, approach.ray(), note, [&] { return approach.limit(nothing); });
     // Leaves share triangles.
     std::ranges::sort(numbers);
     const auto repeated = std::ranges::unique(numbers);

@@ -45,8 +45,10 @@ static Bytes saved_in(const ovc_scene_config& config) {
 
 Result<std::unique_ptr<Structure>> make_structure(const Soup& soup, GlThread& gl,
                                                   const ovc_scene_config& config,
-                                                  const LogSink& log, BuildProgress* progress) {
+                                                  const LogSink& log, BuildProgress* progress,
+                                                  LeafStore* store) {
     TwoLevelOptions options = options_of(config);
+    options.store = store;
     options.saved = saved_in(config);
     Result<std::unique_ptr<TwoLevel>> built = TwoLevel::build(soup, gl, options, log, progress);
     if (!built)
@@ -93,6 +95,16 @@ ovc_statistics TwoLevel::report() const {
     told.top_level_bytes = scene_.top.tree.bytes() + scene_.top.table_bytes();
     told.from_saved = scene_.from_saved;
     told.gpu_bytes = passes_.gpu_bytes();
+    if (scene_.store) {
+        const LeafStore::Counts store = scene_.store->counts();
+        told.host_budget_bytes = store.budget_bytes;
+        told.host_budget_peak_bytes = store.peak_bytes;
+        told.disk_reads = store.reads;
+        told.disk_bytes = store.read_bytes;
+        told.disk_hits = store.hits;
+        told.disk_misses = store.misses;
+        told.disk_ahead = store.ahead;
+    }
     return told;
 }
 

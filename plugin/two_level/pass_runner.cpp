@@ -6,6 +6,8 @@
 #include "core/system/stopwatch.h"
 #include "core/text/format_text.h"
 #include "plugin/build/build_scene.h"
+#include "plugin/leaf_store/leaf_store.h"
+#include "plugin/two_level/waiting.h"
 
 #include <cassert>
 #include <utility>
@@ -126,7 +128,7 @@ Result<Done> PassRunner::open(BuildProgress* progress) {
     gpu_bytes_ = tracer_->ledger().in_use;
     tracing_.statistics.gpu_peak_bytes =
         std::max(tracing_.statistics.gpu_peak_bytes, tracer_->ledger().peak);
-    return Done{};
+    return tracing_.watch.unless_cancelled();
 }
 
 /// Returns whether the pages could be brought up to date where they are. anew: the plan of the
@@ -191,6 +193,8 @@ void PassRunner::bring_first(BuildProgress* progress) {
     begin(progress, "moving pages to the GPU", 0.05, plan_.pool_bytes);
     const size_t fitting =
         fit_in(bytes_of_each(pages), plan_.pool(), tracing_.scene.top.room()).pages;
+    if (tracing_.scene.store && fitting < pages.size())
+        return; // rays say soon which of them are worth reading
     for (size_t next = 0; next < fitting;) {
         std::vector<uint32_t> some;
         uint64_t bytes = 0;
@@ -203,12 +207,45 @@ void PassRunner::bring_first(BuildProgress* progress) {
     }
 }
 
+/// Moves pages in as Tracer::bring() does, from wherever they lie. Called on the context's thread.
+Moved PassRunner::move_in(std::span<const uint32_t> wanted) {
+    const BuiltScene& scene = tracing_.scene;
+    if (!scene.store)
+        return tracer_->bring(wanted);
+    const auto give = [&](uint32_t leaf, FunctionRef<void(std::span<const uvec4>)> take) {
+        const PageCache::Pin page = scene.store->page(scene.pages[leaf].stored_number);
+        if (!page.texels().empty())
+            take(page.texels());
+    };
+    return tracer_->bring(wanted, give);
+}
+
+void PassRunner::read_ahead(std::span<const uint32_t> wanted) const {
+    const BuiltScene& scene = tracing_.scene;
+    if (!scene.store)
+        return;
+    std::vector<uint32_t> numbers;
+    for (const uint32_t leaf : wanted)
+        numbers.push_back(scene.pages[leaf].stored_number);
+    scene.store->read_ahead(std::move(numbers));
+}
+
+std::vector<uint64_t> PassRunner::costs() const {
+    const BuiltScene& scene = tracing_.scene;
+    std::vector<uint64_t> costs = bytes_of_each(scene.pages);
+    if (scene.store)
+        for (size_t leaf = 0; leaf < costs.size(); ++leaf)
+            if (!scene.store->is_here(scene.pages[leaf].stored_number))
+                costs[leaf] *= kDiskByte;
+    return costs;
+}
+
 size_t PassRunner::bring(std::span<const uint32_t> wanted) {
     assert(tracer_);
     Moved moved;
     gl_.run([&](GlState& state) {
         if (is_ours(state))
-            moved = tracer_->bring(wanted);
+            moved = move_in(wanted);
     });
     tracing_.statistics.pages_in += moved.pages;
     tracing_.statistics.bytes_in += moved.bytes;
@@ -232,7 +269,7 @@ Result<size_t> PassRunner::pass(Batch& batch, std::span<const uint32_t> wanted,
             return;
         done = tracer_->submit(std::span(batch.states).first(count));
         if (done)
-            moved = tracer_->bring(wanted);
+            moved = move_in(wanted);
         if (done)
             done = tracer_->collect(std::span(batch.answers).first(count));
         alive = state.context.alive(); // a dead context leaves anything in the answers

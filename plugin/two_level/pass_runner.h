@@ -56,6 +56,11 @@ public:
     /// Moves the first pages of `wanted` in, as many as fit; returns how many.
     size_t bring(std::span<const uint32_t> wanted);
 
+    /// Begins to read these pages, in this order, where they lie on a disk.
+    void read_ahead(std::span<const uint32_t> wanted) const;
+    /// Returns for each page what moving it in costs, in bytes moved from memory.
+    std::vector<uint64_t> costs() const;
+
     /// Traces the rays of the batch (not empty, at most plan().batch_rays) in one pass; their
     /// answers go into the batch. Beside the pass, pages of `wanted` move in, and meanwhile() runs
     /// on this thread. Returns how many pages were moved. Error: the context is lost, or GL's.
@@ -91,6 +96,7 @@ private:
     Result<Done> open(BuildProgress* progress);
     void close();
     void bring_first(BuildProgress* progress);
+    Moved move_in(std::span<const uint32_t> wanted);
     /// Whether the tracer's context is alive. Called on the context's thread.
     bool is_ours(const GlState& state) const {
         return state.generation == tracer_generation_ && state.context.alive();

@@ -7,8 +7,8 @@
 #include "core/system/parallel.h"
 #include "gpu/trace/tracer.h"
 #include "kdtree/restart.h"
+#include "plugin/fallback/exact_fallback.h"
 #include "plugin/two_level/candidates.h"
-#include "plugin/two_level/exact_fallback.h"
 #include "plugin/two_level/query.h"
 #include "plugin/two_level/tracing.h"
 

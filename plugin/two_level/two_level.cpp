@@ -31,7 +31,7 @@ Result<std::unique_ptr<TwoLevel>> TwoLevel::build(const Soup& soup, GlThread& gl
     if (use)
         return self;
     if (use.error().kind != ErrorKind::OutOfGpuMemory || self->scene_.pages.size() > 1 ||
-        options.leaf_triangles || options.leaves)
+        options.store || options.leaf_triangles || options.leaves)
         return use.error();
     say(log, LogLevel::Warning, "cutting the scene into leaves, of which the GPU holds some");
     TwoLevelOptions cut = options;
@@ -45,6 +45,7 @@ Result<Done> TwoLevel::trace(const Query& query) {
     assert(query.results.size() == query.rays.size());
     assert(query.without.are_for(query.rays.size()));
     const Stopwatch watch;
+    watch_.begin_call();
     const Result<SharedBudget::Use> use = passes_.begin_use();
     if (!use)
         return use.error();
@@ -77,6 +78,7 @@ Result<Done> TwoLevel::all_hits(RaySpan rays, const Exclusions& without, const A
     const auto nearest = [this](RaySpan some, const Exclusions& also, std::span<Hit> hits) {
         return trace_nearest({some, also, hits, {}, {}, {}});
     };
+    watch_.begin_call();
     return trace_all_hits(tracing_, nearest, rays, without, all);
 }
 
@@ -130,10 +132,12 @@ bool TwoLevel::occluded_on_cpu(const Ray& ray, const Exclusion& without,
 }
 
 Result<Done> TwoLevel::stream(StreamHost& host) {
+    watch_.begin_call();
     const Result<SharedBudget::Use> use = passes_.begin_use();
     if (!use)
         return use.error();
-    return trace_stream(tracing_, passes_, host);
+    const Result<Done> done = trace_stream(tracing_, passes_, host);
+    return done ? watch_.unless_cancelled() : done;
 }
 
 Result<ovc_active> TwoLevel::take_active() {
@@ -166,12 +170,16 @@ Result<Done> TwoLevel::save(const ByteSink& sink) const {
             "meshes were removed since the scene was built; one that is built anew without "
             "them can be saved",
             ErrorKind::InvalidArgument};
+    if (scene_.store)
+        return Error{"the scene is one that was saved", ErrorKind::InvalidArgument};
     if (!save_levels(scene_, sink))
         return Error{"saving was stopped", ErrorKind::Cancelled};
     return Done{};
 }
 
 Result<bool> TwoLevel::update(const Changes& changes, BuildProgress* progress) {
+    if (scene_.store)
+        return Error{"a scene whose pages lie on a disk cannot change", ErrorKind::InvalidArgument};
     const auto updated = update_scene(scene_, changes, options_, plan_, progress);
     if (!updated)
         return false;

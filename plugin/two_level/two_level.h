@@ -5,6 +5,7 @@
 #pragma once
 
 #include "core/system/log.h"
+#include "plugin/leaf_store/leaf_store.h"
 #include "plugin/structure/structure.h"
 #include "plugin/two_level/pass_runner.h"
 #include "plugin/two_level/query.h"
@@ -33,7 +34,8 @@ public:
                                  const RayNotes& notes) override;
     bool takes_notes() const override { return true; }
     bool takes_after() const override { return true; }
-    bool has_cpu_tree() const override { return true; }
+    /// A single ray would have no way to say that a page cannot be read.
+    bool has_cpu_tree() const override { return !scene_.store; }
     Result<Done> all_hits(RaySpan rays, const Exclusions& without, const AllHits& all) override;
     Hit nearest_on_cpu(const Ray& ray, const Exclusion& without,
                        const RaySieve& sieve) const override;
@@ -56,7 +58,10 @@ private:
         : scene_(std::move(scene)),
           options_(options),
           plan_(plan),
-          passes_(tracing_, gl, plan, log) {}
+          passes_(tracing_, gl, plan, log) {
+        if (scene_.store)
+            scene_.store->on_failure([this](Error error) { watch_.fail(std::move(error)); });
+    }
 
     template <class Query>
     Result<Done> trace(const Query& query);

@@ -3,8 +3,6 @@
 // that are worth moving in.
 #pragma once
 
-#include "gpu/page/page.h"
-
 #include <algorithm>
 #include <cassert>
 #include <cstdint>
@@ -40,18 +38,23 @@ private:
 /// (docs/decisions/0013).
 inline constexpr uint64_t kBytesARay = 8192;
 
-/// Returns the leaves worth moving in, where counts[leaf] rays wait for each, one count a page:
-/// those with more rays per byte come first. A leaf that is worth less than an eighth of the
-/// first is left out, because its queue may grow; so is one with less than a ray for `bytes_a_ray`
-/// (> 0), because doubles answer its rays sooner than it is moved.
+/// A byte that must first be read from a disk counts as so many that are moved to the GPU: disks
+/// give some 2 GB/s, and moving takes in some 8.
+inline constexpr uint64_t kDiskByte = 4;
+
+/// Returns the leaves worth moving in, where counts[leaf] rays wait for each, and moving it costs
+/// as much as that of costs[leaf] bytes: those with more rays per byte come first. A leaf that is
+/// worth less than an eighth of the first is left out, because its queue may grow; so is one with
+/// less than a ray for `bytes_a_ray` (> 0), because doubles answer its rays sooner than it is
+/// moved.
 inline std::vector<uint32_t> worth_moving(std::span<const size_t> counts,
-                                          std::span<const Page> pages, uint64_t bytes_a_ray) {
-    assert(counts.size() == pages.size() && bytes_a_ray > 0);
+                                          std::span<const uint64_t> costs, uint64_t bytes_a_ray) {
+    assert(counts.size() == costs.size() && bytes_a_ray > 0);
     constexpr double kMinShare = 1.0 / 8;
     std::vector<std::pair<double, uint32_t>> leaves;
     for (uint32_t leaf = 0; leaf < counts.size(); ++leaf)
-        if (counts[leaf] > 0 && counts[leaf] >= pages[leaf].bytes() / bytes_a_ray)
-            leaves.emplace_back(-double(counts[leaf]) / double(pages[leaf].bytes()), leaf);
+        if (counts[leaf] > 0 && counts[leaf] >= costs[leaf] / bytes_a_ray)
+            leaves.emplace_back(-double(counts[leaf]) / double(costs[leaf]), leaf);
     std::sort(leaves.begin(), leaves.end());
     std::vector<uint32_t> wanted;
     for (const auto& [minus_worth, leaf] : leaves)

@@ -30,11 +30,14 @@ public:
         // for the pages moved in. So every pass gets somewhere, though those pages may push out the
         // ones that the others were ready for.
         const std::vector<uint32_t> before = wanted();
+        passes_.read_ahead(before);
         call_up(std::span(before).first(before.empty() ? 0 : passes_.bring(before)));
         if (before.empty() && ready() == 0) { // no queue is worth its page
             each([](auto& wave) { wave.answer_waiting(); });
             return Done{};
         }
+        if (const Result<Done> fine = tracing_.watch.unless_cancelled(); !fine)
+            return fine;
         if (ready() == 0)
             return passes_.lost(); // nothing could be moved in
         Batch* now = &passes_.batches()[0];
@@ -51,6 +54,8 @@ public:
                 wanted_beside = wanted();
             const Result<size_t> moved = passes_.pass(*now, wanted_beside, [&] {
                 resolve(*other);
+                if (tracing_.scene.store)
+                    passes_.read_ahead(worth_moving());
                 goes_on = meanwhile() && goes_on;
                 const bool enough = ready() >= passes_.few_rays();
                 load(*other,
@@ -67,7 +72,7 @@ public:
         }
         resolve(*other);
         call_up(beside);
-        return Done{};
+        return tracing_.watch.unless_cancelled();
     }
 
 private:
@@ -87,17 +92,20 @@ private:
 
     /// Returns the leaves worth moving in for rays of these waves where few are ready; else none.
     std::vector<uint32_t> wanted() {
-        if (ready() >= passes_.few_rays() || waiting() == 0)
-            return {};
-        const std::vector<Page>& pages = tracing_.scene.pages;
-        std::vector<size_t> counts(pages.size());
+        return ready() >= passes_.few_rays() || waiting() == 0 ? std::vector<uint32_t>()
+                                                               : worth_moving();
+    }
+
+    std::vector<uint32_t> worth_moving() {
+        std::vector<size_t> counts(tracing_.scene.pages.size());
         each([&](auto& wave) {
             for (uint32_t leaf = 0; leaf < counts.size(); ++leaf)
                 counts[leaf] += wave.queues().count(leaf);
         });
-        // Where active pages are told, each page that a ray goes through must be in the pool.
-        return worth_moving(counts, pages,
-                            tracing_.options.tell_active ? ~uint64_t(0) : kBytesARay);
+        // Where active pages are told, each page that a ray goes through must be in the pool. On a
+        // disk a page must be read whoever answers its rays.
+        const bool all = tracing_.options.tell_active || tracing_.scene.store;
+        return ovc::worth_moving(counts, passes_.costs(), all ? ~uint64_t(0) : kBytesARay);
     }
 
     /// Fills the batch with rays that are ready.

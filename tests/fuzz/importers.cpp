@@ -171,7 +171,11 @@ void fuzz_ovc(const uint8_t* data, size_t size) {
     if (data[0] % 2)
         test::reseal(memory);
     const MemoryFile file("fuzz.ovc"); // mapped as long as the scene lives: a new one each time
-    check(read_ovc(file.holding(memory.bytes().data(), memory.size()), {}));
+    const std::string path = file.holding(memory.bytes().data(), memory.size());
+    check(read_ovc(path, {}));
+    ImportOptions on_disk;
+    on_disk.on_disk = true;
+    check(read_ovc(path, on_disk));
 }
 
 } // namespace ovc

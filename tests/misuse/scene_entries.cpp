@@ -37,6 +37,9 @@ Misuses misuse_create_scene(Subject& s) {
     with("reserved", [](auto& c) { c.reserved = 1; });
     with("leaves and leaf_triangles", [](auto& c) { c.leaves = c.leaf_triangles = 1; });
     with("saved NULL", [](auto& c) { c.saved_bytes = 64; });
+    with("nothing to read from", [](auto& c) { c.host_memory_bytes = 1 << 20; });
+    with("read_saved without host_memory_bytes",
+         [](auto& c) { c.read_saved = [](void*, uint64_t, void*, size_t) { return 0; }; });
     return wrong.found();
 }
 
@@ -63,6 +66,15 @@ Misuses misuse_add_mesh(Subject& s) {
          [](auto& m) { m.flags = 0, m.indices = indices, m.triangle_count = 1; });
     with("unknown flags", [](auto& m) { m.flags = ~0u; });
     with("origin NaN", [](auto& m) { m.origin[2] = NAN; });
+    with("reads_doubles", [](auto& m) { m.reads_doubles = 2; });
+    with("reserved2", [](auto& m) { m.reserved2 = 1; });
+    const auto read = [](void*, uint64_t, uint64_t, void*) { return 0; };
+    with("positions and read_corners", [&](auto& m) { m.read_corners = read; });
+    with("read_corners without host_memory_bytes", [&](auto& m) {
+        m = sized<ovc_mesh>();
+        m.read_corners = read;
+        m.triangle_count = 1;
+    });
     return wrong.found();
 }
 

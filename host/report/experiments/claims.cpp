@@ -311,6 +311,8 @@ void add_benchmarks(std::vector<Claim>& claims) {
         .held("holds the figures", "to 10 % on more scenes", "ctest -R Plan");
     SectionClaims(claims, kBenchmarks, "Conversion under a budget")
         .held("memory were those of the PLY file,", "bit for bit", "ctest -R ConvertUnderABudget");
+    SectionClaims(claims, kBenchmarks, "Rendering under a budget")
+        .held("All pictures of a scene are", "the same bits", "ctest -R ConvertUnderABudget");
     SectionClaims(claims, kBenchmarks, "Import")
         .measured("dragon, binary PLY", "406",
                   measured_by_bar("import: binary PLY, MB a CPU second"), {},

@@ -50,7 +50,9 @@ class ovc_scene_config(Sized):
                 ("progress", ProgressFunction),
                 ("progress_user", c.c_void_p), ("tell_active", c.c_uint32),
                 ("reserved", c.c_uint32),
-                ("saved", c.c_void_p), ("saved_bytes", c.c_uint64)]
+                ("saved", c.c_void_p), ("saved_bytes", c.c_uint64),
+                ("host_memory_bytes", c.c_uint64), ("read_saved", c.c_void_p),
+                ("read_user", c.c_void_p)]
 
 
 MESH_SHARED, MESH_TEMPLATE, MESH_MOVES = 1, 2, 4
@@ -62,7 +64,9 @@ class ovc_mesh(Sized):
                 ("triangle_count", c.c_uint64),
                 ("origin", c.c_double * 3), ("flags", c.c_uint32), ("reserved", c.c_uint32),
                 ("positions_double", c.c_void_p), ("transform", c.c_void_p),
-                ("mask", c.c_uint32), ("reserved1", c.c_uint32)]
+                ("mask", c.c_uint32), ("reserved1", c.c_uint32),
+                ("read_corners", c.c_void_p), ("read_user", c.c_void_p),
+                ("reads_doubles", c.c_uint32), ("reserved2", c.c_uint32)]
 
 
 class ovc_instance(Sized):

@@ -30,6 +30,7 @@ class Result(enum.IntEnum):
     DEVICE_LOST = 6
     INTERNAL = 7
     CANCELLED = 8
+    UNREADABLE = 9
 
 
 class Error(Exception):

@@ -84,7 +84,7 @@ uint64_t LeafPasses::bring(uint32_t leaf) {
     }
     std::vector<uint32_t> evicted;
     residency.admit(leaf, pages_[leaf].bytes(), residency.now(), evicted); // any page may go
-    pool_.upload(pool_.residency().slot(leaf).offset, pages_[leaf]);
+    pool_.upload(pool_.residency().slot(leaf).offset, pages_[leaf].view());
     return pages_[leaf].bytes();
 }
 

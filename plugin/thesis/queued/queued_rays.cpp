@@ -4,8 +4,8 @@
 #include "plugin/thesis/queued/queued_rays.h"
 
 #include "core/system/parallel.h"
+#include "plugin/fallback/exact_fallback.h"
 #include "plugin/two_level/candidates.h"
-#include "plugin/two_level/exact_fallback.h"
 
 #include <algorithm>
 #include <cassert>

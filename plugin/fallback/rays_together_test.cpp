@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rays that are traced together, and rays that meet few triangles, find what testing every triangle
 // finds.
-#include "plugin/two_level/rays_together.h"
+#include "plugin/fallback/rays_together.h"
 
 #include "kdtree/test_soups.h"
 #include "plugin/build/build_scene.h"
-#include "plugin/two_level/exact_fallback.h"
+#include "plugin/fallback/exact_fallback.h"
 
 #include <gtest/gtest.h>
 

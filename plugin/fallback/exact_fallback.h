@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The exact fallback: traces a ray that float32 could not decide in double, down the top-level tree
-// and through the pages in host memory. Its answers equal those of the CPU KD-tree
+// and through the pages. Its answers equal those of the CPU KD-tree
 // (kdtree/traverse.h) bit for bit, because both test with core/exact/triangle.h every triangle that
 // could be hit.
 #pragma once
 
-#include "gpu/page/page_walk.h"
 #include "kdtree/approach.h"
-#include "plugin/build/built_scene.h"
-#include "plugin/two_level/rays_together.h"
+#include "plugin/fallback/rays_together.h"
+#include "plugin/fallback/scene_walk.h"
 
 namespace ovc {
 
@@ -56,10 +55,9 @@ private:
 template <bool kAnyHit>
 bool trace_few(const BuiltScene& scene, const PreparedRay& p, Hit& hit) {
     FewTest<kAnyHit> few(scene, p);
-    if (!scene.pages.empty())
-        walk_tree(
-            scene.top, scene.pages, scene_leaf(scene.level1.bounds), few.approach().ray(),
-            [&](uint32_t number) { return few.test(number); }, [&] { return few.limit(); });
+    walk_scene(
+        scene, few.approach().ray(), [&](uint32_t number) { return few.test(number); },
+        [&] { return few.limit(); });
     hit = few.gives_up() ? Hit{0, 0, 0, few.near()} : few.hit();
     return !few.gives_up();
 }

@@ -4,9 +4,8 @@
 #pragma once
 
 #include "core/lanes/cull_batch.h"
-#include "gpu/page/page_walk.h"
 #include "kdtree/approach.h"
-#include "plugin/build/built_scene.h"
+#include "plugin/fallback/scene_walk.h"
 #include "shaders/layout.h"
 
 #include <algorithm>
@@ -48,9 +47,7 @@ public:
         };
         const auto limit = [&](uint32_t r) { return limits_[r]; };
         const RaySet all = RaySet((uint64_t(1) << rays_.size()) - 1);
-        if (!scene_.pages.empty() &&
-            !walk_tree_together(scene_.top, scene_.pages, scene_leaf(scene_.level1.bounds), all,
-                                prepared, test, limit))
+        if (!walk_scene_together(scene_, all, prepared, test, limit))
             finish();
     }
 

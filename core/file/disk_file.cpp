@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// DiskFile: reads by pread.
+#include "core/file/disk_file.h"
+
+#include "core/text/suggestion.h"
+
+#include <cerrno>
+#include <cstring>
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace ovc {
+
+int read_file(int descriptor, uint64_t offset, std::span<std::byte> to) {
+    while (!to.empty()) {
+        const ssize_t done = pread(descriptor, to.data(), to.size(), off_t(offset));
+        if (done < 0 && errno == EINTR)
+            continue;
+        if (done <= 0)
+            return done < 0 ? errno : kFileEnded;
+        to = to.subspan(size_t(done));
+        offset += uint64_t(done);
+    }
+    return 0;
+}
+
+Result<DiskFile> DiskFile::open(const std::filesystem::path& path) {
+    const auto failed = [&](const std::string& sentence) {
+        return Error{path.string() + ": " + sentence};
+    };
+    const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    if (descriptor < 0)
+        return failed(errno == ENOENT ? "no such file" + did_you_mean_file(path)
+                                      : std::string("cannot be opened: ") + std::strerror(errno));
+    struct stat info {};
+    const bool regular = fstat(descriptor, &info) == 0 && S_ISREG(info.st_mode);
+    DiskFile file(path, descriptor, regular ? uint64_t(info.st_size) : 0);
+    if (!regular)
+        return failed("found no regular file");
+    if (file.bytes_ == 0)
+        return failed("the file is empty, expected a scene");
+    return file;
+}
+
+DiskFile::~DiskFile() {
+    if (descriptor_ >= 0)
+        close(descriptor_);
+}
+
+bool DiskFile::read(uint64_t offset, std::span<std::byte> to) const {
+    const int failed = read_file(descriptor_, offset, to);
+    int none = 0;
+    if (failed)
+        error_number_.compare_exchange_strong(none, failed);
+    return failed == 0;
+}
+
+std::optional<Error> DiskFile::error() const {
+    const int number = error_number_;
+    if (number == 0)
+        return std::nullopt;
+    return Error{path_.string() + ": cannot be read: " +
+                 (number == kFileEnded ? "bytes are missing" : std::strerror(number))};
+}
+
+} // namespace ovc

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// StoredCorners: the corners of a mesh that lie on a disk instead of in memory.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace ovc {
+
+/// The corners of one mesh, three offsets for each triangle, as a Chunk has them.
+class StoredCorners {
+public:
+    virtual ~StoredCorners() = default;
+
+    /// Whether offsets are doubles, 72 bytes a triangle; else they are floats, 36.
+    virtual bool has_doubles() const = 0;
+    /// Reads the corners of whole triangles from `first` on, as many as fit into `to` exactly. Any
+    /// number of threads may call this. Where they cannot be read, it returns false, `to` becomes
+    /// zeros, which no ray hits, and the owner of the corners knows why.
+    virtual bool read(uint32_t first, std::span<std::byte> to) const = 0;
+};
+
+} // namespace ovc

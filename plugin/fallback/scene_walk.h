@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// walk_scene() takes a ray, or several together, through all pages of a scene, wherever these lie.
+#pragma once
+
+#include "gpu/page/page_walk.h"
+#include "plugin/build/built_scene.h"
+#include "plugin/leaf_store/leaf_store.h"
+
+namespace ovc {
+
+/// As walk_tree_together(). A page that cannot be read holds nothing, and the store knows of that.
+template <class Prepared, class Visit, class Limit>
+bool walk_scene_together(const BuiltScene& scene, RaySet all, Prepared&& prepared, Visit&& visit,
+                         Limit&& limit) {
+    if (scene.pages.empty())
+        return false;
+    PageCache::Pin here;
+    const auto units_of = [&](uint32_t page) {
+        if (!scene.store)
+            return scene.pages[page].view().data();
+        here.release(); // a thread holds one page at a time
+        here = scene.store->page(scene.pages[page].stored_number);
+        return here.texels().data();
+    };
+    return walk_tree_together(scene.top, units_of, scene_leaf(scene.level1.bounds), all, prepared,
+                              visit, limit);
+}
+
+/// The same with one ray. Calls visit(i) and limit().
+template <class Visit, class Limit>
+bool walk_scene(const BuiltScene& scene, const PreparedRay& p, Visit&& visit, Limit&& limit) {
+    return walk_scene_together(
+        scene, 1, [&](uint32_t) -> const PreparedRay& { return p; },
+        [&](uint32_t i, RaySet) { return visit(i); }, [&](uint32_t) { return limit(); });
+}
+
+} // namespace ovc

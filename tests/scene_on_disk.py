@@ -1,0 +1,123 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Renders scene files of which host memory holds a part: the picture is the same bits, the process
+stays within its budgets as the kernel measures it, and what is damaged is said.
+
+usage: scene_on_disk.py OVERCAST [SCENE [WIDTHxHEIGHT]]
+"""
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+MIB = 1 << 20
+SIZE = "160x120"
+
+
+def run(command):
+    """Returns the exit code, what the command said, and the most memory that it had resident."""
+    with tempfile.TemporaryFile() as said:
+        process = subprocess.Popen([str(word) for word in command], stdout=said, stderr=said)
+        _, status, usage = os.wait4(process.pid, 0)
+        process.returncode = os.waitstatus_to_exitcode(status)
+        said.seek(0)
+        return process.returncode, said.read().decode(), usage.ru_maxrss * 1024
+
+
+class Pictures:
+    def __init__(self, overcast, folder, size):
+        self.overcast, self.size = overcast, size
+        self.picture = folder / "picture.png"
+
+    def render(self, scene, *options):
+        self.picture.unlink(missing_ok=True)
+        return run([self.overcast, "render", scene, "--size", self.size, "-o", self.picture,
+                    *options])
+
+    def bytes_of(self, scene, *options):
+        code, said, peak = self.render(scene, *options)
+        if code != 0:
+            sys.exit(f"{scene} {options}: {said}")
+        return self.picture.read_bytes(), peak, said
+
+
+def compare(pictures, file):
+    """Renders under several budgets of both kinds. Returns the level 2 in bytes."""
+    expected, _, said = pictures.bytes_of(file)
+    units = {"B": 1, "KiB": 1 << 10, "MiB": MIB, "GiB": 1 << 30}
+    number, unit = re.search(r"leaves .*?, ([\d.]+) (\w+) of level 2", said).groups()
+    level2 = int(float(number) * units[unit])
+    whole = file.stat().st_size
+    for gpu in (2 * level2, max(level2 // 10, 4 * MIB)):
+        _, empty, _ = pictures.bytes_of("box", "--gpu-memory", gpu)
+        for share in (1, 0.25, 0.05):
+            host = int(whole * share)
+            found, peak, said = pictures.bytes_of(file, "--gpu-memory", gpu, "--host-memory", host)
+            allowed = (host + gpu + empty) * 1.05
+            disk = re.search(r"disk .*", said)[0]
+            print(f"GPU {gpu / MIB:.0f} MiB, host {host / MIB:.1f} MiB ({share:.0%}): peak "
+                  f"{peak / MIB:.0f} MiB, empty {empty / MIB:.0f} MiB; {disk}")
+            if found != expected:
+                sys.exit("another picture")
+            if peak > allowed:
+                sys.exit(f"{peak / MIB:.0f} MiB, {allowed / MIB:.0f} MiB are allowed")
+    return level2
+
+
+def expect_error(pictures, file, sentence, *options):
+    code, said, _ = pictures.render(file, *options)
+    print(said.strip())
+    if code != 1 or not re.search(sentence, said):
+        sys.exit(f"exit code {code}, expected 1 and: {sentence}")
+
+
+def damage(pictures, file, level2):
+    """Spoils what rays read, and cuts the file off."""
+    options = ("--host-memory", 64 * MIB, "--gpu-memory", 2 * level2)
+    whole = bytearray(file.read_bytes())
+    spoilt = file.with_name("spoilt.ovc")
+    # Corners come before levels, which begin with all pages.
+    for place, sentence in ((whole.find(b"ovc levels") + 64 + level2 // 2,
+                             r"the page of leaf \d+ is damaged: its checksum is wrong"),
+                            (None, r"the corners of triangles \d+ to \d+ of mesh 0 are damaged")):
+        again = whole.copy()
+        if place is None:  # all that a picture could show
+            for at in range(MIB, whole.find(b"ovc levels") - MIB, 4096):
+                again[at] ^= 1
+        else:
+            again[place] ^= 1
+        spoilt.write_bytes(again)
+        expect_error(pictures, spoilt, sentence, *options)
+    spoilt.write_bytes(whole[:-100])
+    expect_error(pictures, spoilt, "the file is cut off", *options)
+    expect_error(pictures, file, r"the smallest number that works is (\d+)", "--host-memory", 1000)
+    smallest = int(re.search(r"that works is (\d+)",
+                             pictures.render(file, "--host-memory", 1000)[1])[1])
+    pictures.bytes_of(file, "--host-memory", smallest)
+    expect_error(pictures, file, r"the smallest number that works is", "--host-memory",
+                 smallest - 1)
+    expect_error(pictures, "box", r"--host-memory goes with one \.ovc file", *options)
+
+
+def main():
+    overcast = sys.argv[1]
+    scene = sys.argv[2] if len(sys.argv) > 2 else "landscape-1"
+    size = sys.argv[3] if len(sys.argv) > 3 else SIZE
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        file = folder / "scene.ovc"
+        streams = ("--host-memory", 128 * MIB) if scene.startswith("landscape") else ()
+        code, said, _ = run([overcast, "convert", scene, file, "--leaf-triangles", 8000, *streams])
+        if code != 0:
+            print(f"skipped: {said}")
+            return 77
+        pictures = Pictures(overcast, folder, size)
+        level2 = compare(pictures, file)
+        if len(sys.argv) <= 2:
+            damage(pictures, file, level2)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
