@@ -14,16 +14,19 @@ bool walk_scene_together(const BuiltScene& scene, RaySet all, Prepared&& prepare
                          Limit&& limit) {
     if (scene.pages.empty())
         return false;
+    const auto walk = [&](auto&& units_of) {
+        return walk_tree_together(scene.top, units_of, scene_leaf(scene.level1.bounds), all,
+                                  prepared, visit, limit);
+    };
+    // Two walks, because a question at each link would cost one in memory a sixth of its time.
+    if (!scene.store)
+        return walk([&](uint32_t page) { return scene.pages[page].view().data(); });
     PageCache::Pin here;
-    const auto units_of = [&](uint32_t page) {
-        if (!scene.store)
-            return scene.pages[page].view().data();
+    return walk([&](uint32_t page) {
         here.release(); // a thread holds one page at a time
         here = scene.store->page(scene.pages[page].stored_number);
         return here.texels().data();
-    };
-    return walk_tree_together(scene.top, units_of, scene_leaf(scene.level1.bounds), all, prepared,
-                              visit, limit);
+    });
 }
 
 /// The same with one ray. Calls visit(i) and limit().
