@@ -8,8 +8,8 @@
 
 namespace ovc {
 
-/// The max triangles of one mesh: prims are numbered in 32 bits, and kNone stands for no prim.
-inline constexpr uint64_t kMaxTriangles = 0xfffffffe;
+/// What a mesh of a scene that streams takes of host memory: its names, tables and places.
+inline constexpr uint64_t kMeshBytes = 1200;
 
 Result<Scene> read_ply(const std::filesystem::path& path, const ImportOptions& options);
 Result<Scene> read_obj(const std::filesystem::path& path, const ImportOptions& options);

@@ -128,17 +128,23 @@ static Result<Scene> make_with_model(const std::string& name, const ImportOption
     return scene ? std::move(scene) : Error{fmt::format("{}: {}", model, scene.error().message)};
 }
 
-Result<Scene> open_scene(const SceneArguments& arguments, const LogSink& log,
-                         std::optional<ImageSize> size, FilesRead* files) {
+ImportOptions import_options(const SceneArguments& arguments, const LogSink& log,
+                             FilesRead* files) {
     assert(arguments.check());
     ImportOptions options{log, arguments.strict};
-    options.size = size;
     options.files = files;
     options.max_triangles = *triangle_limit(arguments.max_triangles);
     options.tolerance = *tolerance_of(arguments.tolerance);
     options.pov_version = *pov_version_of(arguments.pov_version);
     options.world = *world_of(arguments.world);
     options.moment = arguments.moment;
+    return options;
+}
+
+Result<Scene> open_scene(const SceneArguments& arguments, const LogSink& log,
+                         std::optional<ImageSize> size, FilesRead* files) {
+    ImportOptions options = import_options(arguments, log, files);
+    options.size = size;
     std::vector<NamedScene> scenes;
     for (const std::string& name : arguments.scenes) {
         Result<Scene> scene = open_scene(name, options, arguments.model);
