@@ -115,9 +115,9 @@ TEST(ObjStream, RefusesMoreMeshesThanTheMemoryHolds) {
     const TestFolder folder;
     const auto path = folder.write("a.obj", vertices(3) + "g a\nf 1 2 3\ng b\nf 1 2 3\n");
     FullSink sink;
-    EXPECT_EQ(folder.plain(streamed_error(path, sink, 4800).message),
-              "a.obj, line 10: found more than 1 objects, groups and materials, which take 1200 "
-              "bytes of host memory each, and may take a quarter of 4800");
+    EXPECT_EQ(folder.plain(streamed_error(path, sink, 8000).message),
+              "a.obj, line 10: found more than 1 objects, groups and materials, which take 2000 "
+              "bytes of host memory each, and may take a quarter of 8000");
 }
 
 /// The limit of a file's size stands for a full disk.

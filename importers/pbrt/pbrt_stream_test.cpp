@@ -136,9 +136,9 @@ TEST(PbrtStream, ErrorsAreSentences) {
     EXPECT_EQ(sentence_of(folder, grid(30), 100'000),
               "a.pbrt:3: found a shape that takes 89328 bytes of host memory, and may take a "
               "quarter of 100000: the smallest number that works is 357312");
-    EXPECT_EQ(sentence_of(folder, repeated(3, grid(1) + grid(1, true)), 9600),
-              "a.pbrt:6: found more than 2 meshes, which take 1200 bytes of host memory each, and "
-              "may take a quarter of 9600");
+    EXPECT_EQ(sentence_of(folder, repeated(3, grid(1) + grid(1, true)), 16'000),
+              "a.pbrt:6: found more than 2 meshes, which take 2000 bytes of host memory each, and "
+              "may take a quarter of 16000");
     EXPECT_THAT(sentence_of(folder, "ObjectBegin \"o\" " + repeated(9, grid(3)), 9000),
                 testing::AllOf(testing::HasSubstr("objects and texture coordinates take "),
                                testing::EndsWith("and may take a quarter of 9000")));
