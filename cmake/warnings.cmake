@@ -6,9 +6,6 @@ target_compile_options(ovc_flags INTERFACE
     # The edge functions of core/exact/triangle.h stay antisymmetric only when products and sums
     # round separately.
     -ffp-contract=off
-    # GCC inlines less in a large unit. Which files a unity build compiles together must not decide
-    # how fast calls are: one that had grown beyond the limit made them a sixth slower.
-    $<$<COMPILE_LANG_AND_ID:CXX,GNU>:--param=large-unit-insns=1000000>
     $<$<BOOL:${OVC_WERROR}>:-Werror>)
 target_include_directories(ovc_flags INTERFACE ${PROJECT_SOURCE_DIR})
 if(OVC_SANITIZE)

@@ -23,9 +23,9 @@ struct Format {
     bool streams = false;
 };
 
-constexpr Format kFormats[] = {{"obj", read_obj, write_obj},
+constexpr Format kFormats[] = {{"obj", read_obj, write_obj, false, true},
                                {"ovc", read_ovc, write_ovc},
-                               {"pbrt", read_pbrt, nullptr, true},
+                               {"pbrt", read_pbrt, nullptr, true, true},
                                {"ply", read_ply, write_ply, false, true},
                                {"pov", read_pov, nullptr, true}};
 

@@ -15,6 +15,9 @@
 
 namespace ovc {
 
+/// The max triangles of one mesh: prims are numbered in 32 bits, and kNone stands for no prim.
+inline constexpr uint64_t kMaxTriangles = 0xfffffffe;
+
 /// The default of ImportOptions::max_triangles: 3.6 GB of soup.
 inline constexpr uint64_t kDefaultMostTriangles = 100'000'000;
 
@@ -25,7 +28,8 @@ inline constexpr double kMinTolerance = 1e-4, kMaxTolerance = 0.5;
 /// Where the triangles of a scene go that is not to be held in memory.
 struct Streaming {
     TriangleSink& sink;
-    uint64_t host_bytes; // that reading may take
+    uint64_t host_bytes;               // that reading may take
+    std::filesystem::path folder = {}; // for scratch files
 };
 
 struct ImportOptions {
@@ -54,11 +58,14 @@ struct ImportOptions {
     /// Receives every file that is read or looked for in vain; may be null.
     FilesRead* files = nullptr;
     /// Not null: the triangles go to its sink, and the scene that comes back has empty meshes. For
-    /// files that streams() names alone. Error of the kind Cancelled: the sink wants no more.
+    /// files that streams() names alone. A scene that places meshes more than once comes back whole
+    /// instead, and the sink gets nothing, if it can be converted in so much memory. Error of the
+    /// kind Cancelled: the sink wants no more.
     const Streaming* streaming = nullptr;
 };
 
-/// Returns whether the file's triangles can go to a sink, as far as the name tells: .ply can.
+/// Returns whether the file's triangles can go to a sink, as far as the name tells: .ply, .obj and
+/// .pbrt can.
 bool streams(const std::filesystem::path& path);
 
 /// Reads a scene. The extension chooses the reader, in any case and after a trailing .gz is taken

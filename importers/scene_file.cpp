@@ -273,7 +273,8 @@ Result<Done> write_scene_file(const Scene& scene, const TriangleStore& store,
     assert(store.meshes() == scene.meshes.size());
     LargeParts parts;
     for (size_t m = 0; m < scene.meshes.size(); ++m) {
-        MeshExtent extent{scene.soup.chunks[m].origin(), store.corners(m), store.normals(m)};
+        MeshExtent extent{scene.soup.chunks[m].origin(), store.corners(m), store.normals(m),
+                          scene.meshes[m].uv.size()};
         extent.mask = scene.soup.chunks[m].mask();
         parts.extents.push_back(extent);
     }

@@ -79,9 +79,23 @@ static LogSink noting_warnings(Provenance& from, const LogSink& log) {
     };
 }
 
+/// Builds a scene that memory holds, and writes all of it as .ovc.
+static Result<Done> save_held(const Scene& scene, const Provenance& from, BackendOptions options,
+                              const LogSink& log, const std::string& output) {
+    options.saved = scene.saved;
+    const Result<std::unique_ptr<Backend>> backend = make_backend(scene.soup, options, log);
+    if (!backend)
+        return backend.error();
+    if (!(*backend)->saves())
+        say(log, LogLevel::Warning,
+            fmt::format("{} holds the scene alone: only two-level can be saved", output));
+    return write_scene_file(scene, from, (*backend)->saves() ? levels_of(**backend) : SaveLevels(),
+                            output);
+}
+
 /// Writes all of the scene, and what the plugin builds of it, as .ovc.
 static Result<Done> convert_to_scene_file(const SceneArguments& source,
-                                          const BackendOptions& backend_options, const LogSink& log,
+                                          const BackendOptions& options, const LogSink& log,
                                           const std::string& output) {
     FilesRead files;
     Provenance from;
@@ -90,37 +104,35 @@ static Result<Done> convert_to_scene_file(const SceneArguments& source,
     if (!scene)
         return scene.error();
     from.files = files.stamps();
-    BackendOptions options = backend_options;
-    options.saved = scene->saved;
-    const Result<std::unique_ptr<Backend>> backend = make_backend(scene->soup, options, log);
-    if (!backend)
-        return backend.error();
-    if (!(*backend)->saves())
-        say(log, LogLevel::Warning,
-            fmt::format("{} holds the scene alone: only two-level can be saved", output));
-    return write_scene_file(*scene, from, (*backend)->saves() ? levels_of(**backend) : SaveLevels(),
-                            output);
+    return save_held(*scene, from, options, log, output);
 }
 
-/// Reads a scene whose triangles go to the store instead of memory.
-static Result<Scene> stream_scene(const std::string& source, uint64_t host_bytes,
-                                  const LogSink& log, FilesRead& files, TriangleStore& store) {
-    if (is_test_scene(source))
-        return stream_test_scene(source, store);
-    const Streaming streaming{store, host_bytes};
-    ImportOptions options{log};
-    options.files = &files;
+/// Reads a scene whose triangles go to the store instead of memory, so that by default it may have
+/// as many as can be numbered.
+static Result<Scene> stream_scene(const SceneArguments& source, const Streaming& streaming,
+                                  const LogSink& log, FilesRead& files) {
+    if (is_test_scene(source.scenes.front()))
+        return stream_test_scene(source.scenes.front(), streaming.sink);
+    ImportOptions options = import_options(source, log, &files);
     options.streaming = &streaming;
-    return load(source, options);
+    if (source.max_triangles.empty())
+        options.max_triangles = kMaxTriangles;
+    return load(source.scenes.front(), options);
+}
+
+static Result<Done> check_streams(const std::string& source) {
+    if (is_test_scene(source) ? test_scene_entry(source).streams : streams(source))
+        return Done{};
+    return Error{fmt::format("--host-memory goes with inputs that stream, .ply, .obj, .pbrt and "
+                             "the test scene landscape-N; found '{}'",
+                             source)};
 }
 
 /// As convert_to_scene_file(), within so much host memory.
-static Result<Done> convert_streamed(const std::string& source, BackendOptions options,
+static Result<Done> convert_streamed(const SceneArguments& source, BackendOptions options,
                                      const LogSink& log, const std::string& output) {
-    if (is_test_scene(source) ? !test_scene_entry(source).streams : !streams(source))
-        return Error{fmt::format("--host-memory goes with inputs that stream, .ply and the test "
-                                 "scene landscape-N; found '{}'",
-                                 source)};
+    if (const Result<Done> fine = check_streams(source.scenes.front()); !fine)
+        return fine;
     const std::filesystem::path folder = std::filesystem::path(output).parent_path();
     Result<TriangleStore> store = TriangleStore::create(folder);
     if (!store)
@@ -128,13 +140,16 @@ static Result<Done> convert_streamed(const std::string& source, BackendOptions o
     Provenance from;
     FilesRead files;
     const LogSink listening = noting_warnings(from, log);
-    const Result<Scene> scene = stream_scene(source, options.host_bytes, listening, files, *store);
+    const Streaming streaming{*store, options.host_bytes, folder};
+    const Result<Scene> scene = stream_scene(source, streaming, listening, files);
     const Result<Done> stored = store->finish();
     if (!stored)
         return stored; // reading ends where the store fails
     if (!scene)
         return scene.error();
     from.files = files.stamps();
+    if (scene->soup.triangle_count() > 0)
+        return save_held(*scene, from, options, log, output);
     options.watching = BuildWatching::Shown;
     const SaveLevels save_levels = [&](const ByteSink& sink) {
         return save_streamed_levels(*scene, *store, options.host_bytes, folder, options, log, sink);
@@ -169,7 +184,8 @@ public:
                        "is complete");
         log_.add_to(app, /* with_quiet= */ true);
         backend_.add_to(
-            app, "For .ovc of .ply and landscape-N: the most host memory to use, 2G, besides "
+            app, "For .ovc of .ply, .obj, .pbrt and landscape-N: the most host memory to use, 2G, "
+                 "besides "
                  "what the program and the driver take; the triangles wait on the disk of OUT");
         app.footer(kConvertExamples);
     }
@@ -216,7 +232,7 @@ private:
 
     Result<Done> convert(const BackendOptions& options, const LogSink& log) {
         if (options.host_bytes > 0)
-            return convert_streamed(source_.scenes.front(), options, log, output_);
+            return convert_streamed(source_, options, log, output_);
         return extension_of(output_) == ".ovc"
                    ? convert_to_scene_file(source_, options, log, output_)
                    : convert_to_mesh(source_, log, output_, log_.quiet());

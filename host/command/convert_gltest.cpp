@@ -62,9 +62,11 @@ protected:
 
 TEST_F(ConvertUnderABudget, PicturesAreThoseOfTheSource) {
     // 100,000 triangles are too many to be built in memory within 48 MiB. Those of plants-1 share
-    // few sides, and some reach far. A box is built in memory.
-    for (const std::string scene : {"sphere-7", "plants-1", "box"}) {
-        const std::string source = path(scene + ".ply"), file = path(scene + ".ovc");
+    // few sides, and some reach far. A box is built in memory. As OBJ, they are several meshes.
+    for (const std::string name :
+         {"sphere-7.ply", "plants-1.ply", "box.ply", "powerplant-200000.obj"}) {
+        const std::string source = path(name), file = path("a.ovc");
+        const std::string scene = name.substr(0, name.find('.'));
         ASSERT_EQ(error({"convert", scene, source, "--quiet"}), "");
         ASSERT_EQ(error({"convert", source, file, "--host-memory", "48M"}), "");
         const std::string expected = picture(source);
@@ -109,6 +111,35 @@ TEST_F(ConvertUnderABudget, HostMemoryOfARenderingGoesWithOneSceneFile) {
     ASSERT_EQ(error({"convert", "box", path("box.ovc"), "--backend", "cpu-kdtree"}), "");
     EXPECT_THAT(refused({path("box.ovc"), "--host-memory", "1G"}),
                 testing::HasSubstr("the file holds no levels"));
+}
+
+/// A scene of PBRT has lights, an exposure, hidden shapes, instances and holes as well.
+TEST_F(ConvertUnderABudget, PicturesAreThoseOfAPbrtFile) {
+    std::ofstream(path("a.pgm")) << "P2\n2 1\n255\n0 255\n";
+    std::ofstream(path("ball.pbrt")) << "Shape \"sphere\" \"float radius\" 0.7\n";
+    std::ofstream scene(path("a.pbrt"));
+    scene << "LookAt 0 3 -9  0 0 0  0 1 0 Camera \"perspective\"\nWorldBegin\n"
+             "LightSource \"point\" \"point from\" [3 9 -9] \"rgb I\" [50 50 50]\n"
+             "ObjectBegin \"o\" Include \"ball.pbrt\" ObjectEnd\n"
+             "AttributeBegin Translate 0 -2 0 ObjectInstance \"o\" AttributeEnd\n"
+             "AttributeBegin AreaLightSource \"diffuse\" Translate 0 3 0 Shape \"disk\" "
+             "AttributeEnd\n"
+             "Texture \"t\" \"float\" \"imagemap\" \"string filename\" \"a.pgm\"\n"
+             "AttributeBegin Translate 0 0 -3 Shape \"disk\" \"texture alpha\" \"t\" "
+             "AttributeEnd\n";
+    for (int i = 0; i < 16; ++i)
+        scene << "Material \"matte\" \"rgb Kd\" [0.5 " << i << "e-2 0.9]\nAttributeBegin Translate "
+              << i % 4 * 1.2 - 2 << " " << i / 4 * 1.2 - 2 << " " << i
+              << " Include \"ball.pbrt\" AttributeEnd\n";
+    scene.close();
+    ASSERT_EQ(error({"convert", path("a.pbrt"), path("a.ovc"), "--tolerance", "5e-4",
+                     "--host-memory", "48M"}),
+              "");
+    ASSERT_EQ(error({"convert", path("a.pbrt"), path("b.ovc"), "--tolerance", "5e-4"}), "");
+    const std::string expected = picture(path("b.ovc"));
+    ASSERT_FALSE(expected.empty());
+    EXPECT_EQ(picture(path("a.ovc")), expected);
+    EXPECT_EQ(picture(path("a.ovc"), "8M"), expected);
 }
 
 TEST_F(ConvertUnderABudget, AFileThatFitsIsTheSameAsWithoutABudget) {

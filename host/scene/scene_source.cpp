@@ -134,22 +134,28 @@ static bool is_one_scene_file(const SceneArguments& arguments) {
            std::filesystem::path(arguments.scenes[0]).extension() == ".ovc";
 }
 
-Result<Scene> open_scene(const SceneArguments& arguments, const LogSink& log,
-                         std::optional<ImageSize> size, FilesRead* files) {
+ImportOptions import_options(const SceneArguments& arguments, const LogSink& log,
+                             FilesRead* files) {
     assert(arguments.check());
     ImportOptions options{log, arguments.strict};
-    options.size = size;
     options.files = files;
     options.max_triangles = *triangle_limit(arguments.max_triangles);
     options.tolerance = *tolerance_of(arguments.tolerance);
     options.pov_version = *pov_version_of(arguments.pov_version);
     options.world = *world_of(arguments.world);
     options.moment = arguments.moment;
-    options.on_disk = arguments.on_disk;
+    return options;
+}
+
+Result<Scene> open_scene(const SceneArguments& arguments, const LogSink& log,
+                         std::optional<ImageSize> size, FilesRead* files) {
     if (arguments.on_disk && !is_one_scene_file(arguments))
         return Error{fmt::format("--host-memory goes with one .ovc file, which overcast convert "
                                  "makes; found '{}'",
                                  arguments.name())};
+    ImportOptions options = import_options(arguments, log, files);
+    options.size = size;
+    options.on_disk = arguments.on_disk;
     std::vector<NamedScene> scenes;
     for (const std::string& name : arguments.scenes) {
         Result<Scene> scene = open_scene(name, options, arguments.model);

@@ -49,6 +49,9 @@ inline Result<Scene> open_scene(const std::string& source, const LogSink& log,
                                 const std::string& model = {}) {
     return open_scene(source, ImportOptions{log}, model);
 }
+/// Returns how the arguments, which check() must have accepted, want files read. files: receives
+/// those; or null.
+ImportOptions import_options(const SceneArguments& arguments, const LogSink& log, FilesRead* files);
 /// Opens all scenes of the arguments, which check() must have accepted, as one. size: of the
 /// picture to come, where that is known. files: receives the files that are read; or null.
 Result<Scene> open_scene(const SceneArguments& arguments, const LogSink& log,

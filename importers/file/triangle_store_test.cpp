@@ -79,6 +79,39 @@ TEST(TriangleStore, GivesBackWhatItTook) {
     EXPECT_EQ(written([&](const ByteSink& sink) { return store->write_normals(sink); }), first);
 }
 
+TEST(TriangleStore, GoesOnWithMeshesThatWereLeft) {
+    const Folder folder;
+    Result<TriangleStore> store = TriangleStore::create(folder.path);
+    ASSERT_TRUE(store);
+    std::vector<std::vector<vec3>> meshes(3);
+    for (size_t m = 0; m < meshes.size(); ++m)
+        store->begin_mesh();
+    for (size_t i = 0; i < 60; ++i) {
+        const size_t m = i * i % 3; // 0, 1, 1, 0, 1, 1
+        const std::vector<vec3> part = numbered(3 * (i * 977 % 9000), float(i));
+        meshes[m].insert(meshes[m].end(), part.begin(), part.end());
+        store->go_on_with(m);
+        EXPECT_TRUE(store->add_corners(part) && store->add_normals(part));
+        if (i == 30)
+            store->drop_normals(0);
+    }
+    store->drop_normals(0);
+    ASSERT_TRUE(store->finish());
+    std::vector<vec3> all;
+    for (size_t m = 0; m < meshes.size(); ++m) {
+        ASSERT_EQ(store->corners(m), meshes[m].size());
+        EXPECT_EQ(store->normals(m), m == 0 ? 0 : meshes[m].size());
+        all.insert(all.end(), meshes[m].begin(), meshes[m].end());
+        for (size_t at = 0; at + 50'000 < meshes[m].size(); at += 10'007) {
+            std::vector<vec3> some(50'000); // of several runs
+            EXPECT_TRUE(store->read_corners(m, at, some));
+            EXPECT_TRUE(std::ranges::equal(some, std::span(meshes[m]).subspan(at, some.size())));
+        }
+    }
+    EXPECT_EQ(written([&](const ByteSink& sink) { return store->write_corners(sink); }), all);
+    EXPECT_EQ(written([&](const ByteSink& sink) { return store->write_normals(sink); }), meshes[1]);
+}
+
 TEST(TriangleStore, TellsThatThereIsNoSuchFolder) {
     const Result<TriangleStore> store = TriangleStore::create("/no/such/folder");
     ASSERT_FALSE(store);

@@ -2,6 +2,8 @@
 // The OBJ reader streams polygons, normals and materials, and makes one mesh per object, group and
 // material.
 // Source: Wavefront, "Advanced Visualizer" manual, appendix B1 (the Object files format).
+#include "core/file/triangle_sink.h"
+#include "importers/file/scratch_array.h"
 #include "importers/file/source.h"
 #include "importers/file/text.h"
 #include "importers/mesh/blocks.h"
@@ -27,7 +29,7 @@ namespace {
 constexpr double kFar = 16;
 
 struct Corner {
-    uint32_t vertex = 0;
+    size_t vertex = 0;
     int64_t normal = -1;     // index; -1 if none is stated; may be out of range
     bool has_normal = false; // the file states one, though it may not exist
     bool has_texture = false;
@@ -40,12 +42,32 @@ struct Mesh {
     Blocks<vec3> normals; // as many as corners, while has_normals
     bool has_normals = true;
     uint64_t normals_stated = 0, texture_coordinates = 0; // counted in corners
+    uint64_t passed_on = 0;                               // corners that a sink has got
 };
+
+/// How the host memory that a stream may take is shared out. Corners wait for the sink, and exist
+/// twice while they are handed on.
+struct Shares {
+    uint64_t vertices, normals, waiting, meshes;
+
+    explicit Shares(uint64_t bytes)
+        : vertices(bytes / 2), normals(bytes / 8), waiting(bytes / 16), meshes(bytes / 4) {}
+};
+
+constexpr size_t kPartOfMesh = 1 << 16; // corners of a mesh that are handed on at once, or more
+constexpr uint64_t kUnlimited = ~uint64_t(0);
 
 class ObjReader {
 public:
     ObjReader(Source& source, const std::filesystem::path& path, const ImportOptions& options)
-        : source_(source), path_(path), log_(options.log), files_read_(options.files) {}
+        : source_(source),
+          path_(path),
+          log_(options.log),
+          files_read_(options.files),
+          streaming_(options.streaming),
+          shares_(streaming_ ? streaming_->host_bytes : kUnlimited),
+          vertices_(streaming_ ? streaming_->folder : "", shares_.vertices),
+          normals_(streaming_ ? streaming_->folder : "", shares_.normals) {}
 
     bool read() {
         while (const auto line = source_.line()) {
@@ -54,10 +76,12 @@ public:
             if (!read_line(joined(*line)))
                 return false;
         }
-        return !source_.is_damaged() || fail("");
+        if (source_.is_damaged())
+            return fail("");
+        return !streaming_ || pass_on_all();
     }
 
-    const Error& error() const { return error_; }
+    Error error() const { return is_wanted_ ? error_ : Error{"cancelled", ErrorKind::Cancelled}; }
     Result<Scene> take();
 
 private:
@@ -86,26 +110,34 @@ private:
     bool read_normal(std::string_view rest);
     bool read_face(std::string_view rest);
     bool read_corner(std::string_view word);
-    bool read_index(std::string_view word, std::string_view text, size_t count, uint32_t& index);
+    bool read_index(std::string_view word, std::string_view text, size_t count, size_t& index);
     bool fail_index(int64_t index, size_t count);
     void read_libraries(std::string_view rest);
     bool read_library(std::string_view name);
     void use_material(std::string_view name);
-    Mesh& mesh();
-    void add_polygon();
+    bool find_mesh();
+    bool add_mesh(std::string name);
+    bool add_polygon();
+    void cut_polygon(Mesh& to);
     void add_corner(Mesh& mesh, const Corner& corner);
+    bool pass_on(size_t mesh);
+    bool pass_on_all();
+    bool check_scratch();
     void say_left_out() const;
 
     Source& source_;
     const std::filesystem::path& path_;
     const LogSink& log_;
     FilesRead* const files_read_;
+    const Streaming* const streaming_;
+    const Shares shares_;
+    bool is_wanted_ = true; // by its sink
     Error error_;
     std::unordered_set<std::string> warned_;
     std::string joined_;
 
-    std::vector<dvec3> vertices_;
-    std::vector<vec3> normals_;
+    ScratchArray<dvec3> vertices_;
+    ScratchArray<vec3> normals_;
     bool has_texture_coordinates_ = false;
     Box bounds_;
     std::optional<dvec3> origin_; // chosen from the vertices that precede the first face
@@ -123,6 +155,7 @@ private:
     std::unordered_map<std::string, size_t> mesh_ids_;
     size_t mesh_ = 0;
     bool mesh_known_ = false; // becomes false when object, group or material changes
+    uint64_t waiting_ = 0;    // corners in all meshes that the sink has not got
 };
 
 std::string_view ObjReader::joined(std::string_view line) {
@@ -222,7 +255,7 @@ bool ObjReader::read_face(std::string_view rest) {
     if (polygon_.size() < 3)
         warn("f", "faces with fewer than three corners left out");
     else
-        add_polygon();
+        return add_polygon();
     return true;
 }
 
@@ -256,7 +289,7 @@ bool ObjReader::fail_index(int64_t index, size_t count) {
 
 /// Reads an index that counts from 1, or backwards from -1, the last vertex so far.
 bool ObjReader::read_index(std::string_view word, std::string_view text, size_t count,
-                           uint32_t& index) {
+                           size_t& index) {
     const auto value = parse_number<int64_t>(text);
     if (!value)
         return fail(
@@ -264,7 +297,7 @@ bool ObjReader::read_index(std::string_view word, std::string_view text, size_t 
     const int64_t from_zero = *value > 0 ? *value - 1 : int64_t(count) + *value;
     if (*value == 0 || from_zero < 0 || from_zero >= int64_t(count))
         return fail_index(*value, count);
-    index = uint32_t(from_zero);
+    index = size_t(from_zero);
     return true;
 }
 
@@ -326,7 +359,8 @@ void ObjReader::use_material(std::string_view name) {
     mesh_known_ = false;
 }
 
-Mesh& ObjReader::mesh() {
+/// Makes mesh_ that of the object, group and material at hand.
+bool ObjReader::find_mesh() {
     if (!mesh_known_) {
         std::string name = object_;
         if (!name.empty() && !group_.empty())
@@ -334,27 +368,49 @@ Mesh& ObjReader::mesh() {
         name += group_;
         const auto [at, is_new] =
             mesh_ids_.try_emplace(fmt::format("{}\n{}", material_, name), meshes_.size());
-        if (is_new) {
-            meshes_.emplace_back();
-            meshes_.back().name = std::move(name);
-            meshes_.back().material = material_;
-        }
+        if (is_new && !add_mesh(std::move(name)))
+            return false;
         mesh_ = at->second;
         mesh_known_ = true;
     }
     assert(mesh_ < meshes_.size() && meshes_[mesh_].material == material_);
-    return meshes_[mesh_];
+    return true;
 }
 
-void ObjReader::add_polygon() {
+bool ObjReader::add_mesh(std::string name) {
+    if (streaming_ && (meshes_.size() + 1) * kMeshBytes > shares_.meshes)
+        return fail(fmt::format("found more than {} objects, groups and materials, which take {} "
+                                "bytes of host memory each, and may take a quarter of {}",
+                                meshes_.size(), kMeshBytes, streaming_->host_bytes));
+    meshes_.emplace_back();
+    meshes_.back().name = std::move(name);
+    meshes_.back().material = material_;
+    if (streaming_)
+        streaming_->sink.begin_mesh();
+    return true;
+}
+
+bool ObjReader::add_polygon() {
     if (!origin_)
         origin_ = chunk_origin(bounds_, kFar);
-    Mesh& to = mesh();
-    if (polygon_.size() == 3) {
+    if (!find_mesh())
+        return false;
+    Mesh& to = meshes_[mesh_];
+    const size_t before = to.corners.size();
+    if (polygon_.size() == 3)
         for (const Corner& corner : polygon_)
             add_corner(to, corner);
-        return;
-    }
+    else
+        cut_polygon(to);
+    if (!streaming_)
+        return true;
+    waiting_ += to.corners.size() - before;
+    if (to.corners.size() >= kPartOfMesh)
+        return pass_on(mesh_);
+    return waiting_ * 2 * sizeof(vec3) < shares_.waiting || pass_on_all();
+}
+
+void ObjReader::cut_polygon(Mesh& to) {
     outline_.clear();
     for (const Corner& corner : polygon_)
         outline_.push_back(vertices_[corner.vertex]);
@@ -372,16 +428,44 @@ void ObjReader::add_corner(Mesh& to, const Corner& corner) {
     to.texture_coordinates += corner.has_texture;
     if (!to.has_normals)
         return;
-    const bool usable = corner.normal >= 0 && corner.normal < int64_t(normals_.size()) &&
-                        normals_[size_t(corner.normal)] != vec3(0);
-    if (usable) {
-        to.normals.push_back(normals_[size_t(corner.normal)]);
+    const bool exists = corner.normal >= 0 && corner.normal < int64_t(normals_.size());
+    const vec3 normal = exists ? normals_[size_t(corner.normal)] : vec3(0);
+    if (normal != vec3(0)) {
+        to.normals.push_back(normal);
         return;
     }
-    if (corner.normal != -1 || to.normals.size() > 0)
+    if (corner.normal != -1 || to.normals.size() + to.passed_on > 0)
         warn("vn", "normals left out where a corner of the mesh has none that can be used");
     to.has_normals = false;
     to.normals = {};
+    if (streaming_)
+        streaming_->sink.drop_normals(mesh_);
+}
+
+/// Hands the corners and normals of a mesh to the sink.
+bool ObjReader::pass_on(size_t mesh) {
+    Mesh& from = meshes_[mesh];
+    const std::vector<vec3> corners = from.corners.take(), normals = from.normals.take();
+    from.passed_on += corners.size();
+    waiting_ -= corners.size();
+    streaming_->sink.go_on_with(mesh);
+    is_wanted_ = streaming_->sink.add_corners(corners) &&
+                 (normals.empty() || streaming_->sink.add_normals(normals));
+    return is_wanted_ && check_scratch();
+}
+
+bool ObjReader::pass_on_all() {
+    for (size_t mesh = 0; mesh < meshes_.size(); ++mesh)
+        if (meshes_[mesh].corners.size() > 0 && !pass_on(mesh))
+            return false;
+    return check_scratch();
+}
+
+bool ObjReader::check_scratch() {
+    for (const Error* error : {vertices_.error(), normals_.error()})
+        if (error)
+            error_ = *error;
+    return !vertices_.error() && !normals_.error();
 }
 
 /// Warns of the materials that some mesh has, because a library may serve many files.
@@ -410,26 +494,29 @@ void ObjReader::say_left_out() const {
 }
 
 Result<Scene> ObjReader::take() {
-    std::vector<dvec3>().swap(vertices_);
-    std::vector<vec3>().swap(normals_);
+    vertices_.clear();
+    normals_.clear();
     Scene scene;
     scene.name = path_.stem().string();
+    bool has_triangles = false;
     for (Mesh& m : meshes_) {
         assert(m.normals.size() == (m.has_normals ? m.corners.size() : 0));
-        if (m.corners.size() / 3 > kMaxTriangles)
+        const uint64_t triangles = (m.passed_on + m.corners.size()) / 3;
+        has_triangles = has_triangles || triangles > 0;
+        if (triangles > kMaxTriangles)
             return source_.error(fmt::format("found {} triangles in one mesh, expected at most {}",
-                                             m.corners.size() / 3, kMaxTriangles));
+                                             triangles, kMaxTriangles));
         scene.add_mesh(m.name.empty() ? scene.name : std::move(m.name), m.material,
                        Chunk::owning(origin_.value_or(dvec3(0)), m.corners.take()),
                        m.normals.take());
         MeshInfo& mesh = scene.meshes.back();
-        mesh.normals_left_out = mesh.normals.empty() ? m.normals_stated : 0;
+        mesh.normals_left_out = m.has_normals ? 0 : m.normals_stated;
         mesh.texture_coordinates_left_out = m.texture_coordinates;
     }
     say_left_out();
     for (LibraryMaterial& read : materials_)
         scene.materials.push_back(std::move(read.material));
-    if (scene.soup.triangle_count() == 0)
+    if (!has_triangles)
         say(log_, LogLevel::Warning, source_.error("it has no triangles").message);
     return scene;
 }

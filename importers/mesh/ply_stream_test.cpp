@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A PLY file that streams gives its sink the triangles of one that is held.
-#include "importers/file/triangle_store.h"
-#include "importers/test_files.h"
+#include "importers/expect_stream.h"
 
 #include <fmt/format.h>
-
-#include <cstring>
 
 namespace ovc {
 namespace {
@@ -46,72 +43,25 @@ std::string file_of(std::initializer_list<std::string> elements) {
     return kHeader + headers + "end_header\n" + rows;
 }
 
-void expect_streams_as_it_loads(const TestFolder& folder, const std::string& name,
-                                const std::string& contents) {
-    SCOPED_TRACE(name);
-    const auto path = folder.write(name, contents);
-    const Result<Scene> held = load(path);
-    Result<TriangleStore> store = TriangleStore::create(std::filesystem::temp_directory_path());
-    ASSERT_TRUE(held && store);
-    const Streaming streaming{*store, 1 << 30};
-    ImportOptions options;
-    options.streaming = &streaming;
-    const Result<Scene> streamed = load(path, options);
-    ASSERT_TRUE(streamed) << streamed.error().message;
-    ASSERT_TRUE(store->finish());
-    ASSERT_EQ(store->meshes(), held->meshes.size());
-    const Chunk& chunk = held->soup.chunks[0];
-    EXPECT_EQ(streamed->soup.chunks[0].size(), 0u);
-    EXPECT_EQ(streamed->soup.chunks[0].origin(), chunk.origin());
-    EXPECT_EQ(streamed->meshes[0].normals_left_out, held->meshes[0].normals_left_out);
-    const auto gathered = [](const auto& write) {
-        std::vector<vec3> items;
-        EXPECT_TRUE(write([&](Bytes bytes) {
-            const size_t before = items.size();
-            items.resize(before + bytes.size() / sizeof(vec3));
-            std::memcpy(items.data() + before, bytes.data(), bytes.size());
-            return true;
-        }));
-        return items;
-    };
-    EXPECT_TRUE(std::ranges::equal(
-        gathered([&](const ByteSink& sink) { return store->write_corners(sink); }),
-        chunk.corners()));
-    EXPECT_EQ(gathered([&](const ByteSink& sink) { return store->write_normals(sink); }),
-              held->meshes[0].normals);
+void stream(const TestFolder& folder, const std::string& name, const std::string& contents) {
+    expect_streams_as_it_loads(folder.write(name, contents), 1 << 30);
 }
 
 TEST(PlyStream, GivesTheTrianglesOfAFileThatIsHeld) {
     const TestFolder folder;
     constexpr size_t kMany = 40'000; // triangles of several parts
     const std::string plain = vertices(2 * kMany + 2, "float", false);
-    expect_streams_as_it_loads(folder, "small.ply",
-                               file_of({vertices(22, "float", false), faces(10)}));
-    expect_streams_as_it_loads(folder, "many.ply", file_of({plain, faces(kMany)}));
-    expect_streams_as_it_loads(folder, "gz.ply", gzip(file_of({plain, faces(kMany)})));
-    expect_streams_as_it_loads(folder, "faces_first.ply", file_of({faces(kMany), plain}));
-    expect_streams_as_it_loads(folder, "normals.ply",
-                               file_of({vertices(2 * kMany + 2, "float", true), faces(kMany)}));
-    expect_streams_as_it_loads(folder, "doubles.ply",
-                               file_of({vertices(22, "double", true), faces(10)}));
-    expect_streams_as_it_loads(
-        folder, "strips.ply",
-        file_of({vertices(22, "float", false), "element tristrips 1\nproperty list int int "
-                                               "vertex_indices\n|9 0 1 2 3 -1 4 5 6 7\n"}));
-    expect_streams_as_it_loads(folder, "none.ply", file_of({vertices(3, "float", false)}));
+    stream(folder, "small.ply", file_of({vertices(22, "float", false), faces(10)}));
+    stream(folder, "many.ply", file_of({plain, faces(kMany)}));
+    stream(folder, "gz.ply", gzip(file_of({plain, faces(kMany)})));
+    stream(folder, "faces_first.ply", file_of({faces(kMany), plain}));
+    stream(folder, "normals.ply", file_of({vertices(2 * kMany + 2, "float", true), faces(kMany)}));
+    stream(folder, "doubles.ply", file_of({vertices(22, "double", true), faces(10)}));
+    stream(folder, "strips.ply",
+           file_of({vertices(22, "float", false), "element tristrips 1\nproperty list int int "
+                                                  "vertex_indices\n|9 0 1 2 3 -1 4 5 6 7\n"}));
+    stream(folder, "none.ply", file_of({vertices(3, "float", false)}));
 }
-
-/// Wants no more than its first part.
-struct FullSink final : TriangleSink {
-    int parts = 0;
-
-    void begin_mesh() override {}
-    bool add_corners(std::span<const vec3>) override {
-        ++parts;
-        return false;
-    }
-    bool add_normals(std::span<const vec3>) override { return true; }
-};
 
 TEST(PlyStream, EndsWhereTheSinkWantsNoMore) {
     const TestFolder folder;
@@ -145,9 +95,9 @@ TEST(PlyStream, RefusesMoreVerticesThanTheMemoryHolds) {
     EXPECT_EQ(sink.parts, 0);
 }
 
-TEST(PlyStream, OnlyPlyStreams) {
-    EXPECT_TRUE(streams("a.ply") && streams("b.PLY.gz"));
-    EXPECT_FALSE(streams("a.obj") || streams("a.stl") || streams("ply"));
+TEST(PlyStream, SomeFormatsStream) {
+    EXPECT_TRUE(streams("a.ply") && streams("b.PLY.gz") && streams("c.obj") && streams("d.pbrt"));
+    EXPECT_FALSE(streams("a.pov") || streams("a.stl") || streams("ply"));
 }
 
 } // namespace

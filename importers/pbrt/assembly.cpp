@@ -4,62 +4,14 @@
 
 #include "core/system/parallel.h"
 #include "importers/origin.h"
+#include "importers/pbrt/runs.h"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 
 namespace ovc::pbrt {
 
 namespace {
-
-/// Shapes of more than kSmall triangles stay meshes of their own; a mesh of smaller ones grows to
-/// at most kLargestRun.
-constexpr uint64_t kSmall = 4096, kLargestRun = uint64_t(1) << 20;
-
-/// Shapes that become one mesh.
-struct Run {
-    size_t first, last; // indices into the object's shapes
-    uint32_t triangles = 0;
-    uint32_t material = 0;
-    bool has_normals = false;
-    Sight sight;
-    uint64_t last_size = 0;        // triangles of the last shape
-    uint32_t normals_from = kNone; // the first mesh made of it, which holds the normals
-    uint32_t uv_from = kNone;      // likewise the texture coordinates
-    /// The first meshes made of it, whose corners other instances borrow: one as the file has it,
-    /// and one with its triangles turned round, for transforms that mirror.
-    std::array<uint32_t, 2> corners_from{kNone, kNone};
-    uint64_t normals_left_out = 0, texture_coordinates_left_out = 0; // as in MeshInfo
-
-    void tell_left_out(MeshInfo& mesh) const {
-        mesh.normals_left_out = normals_left_out;
-        mesh.texture_coordinates_left_out = texture_coordinates_left_out;
-    }
-};
-
-bool belongs(const Run& run, const Shape& shape) {
-    return run.material == shape.material && run.has_normals == !shape.mesh.normals.empty() &&
-           run.sight == shape.sight && run.triangles + shape.mesh.size() <= kLargestRun &&
-           shape.mesh.size() <= kSmall && run.last_size <= kSmall;
-}
-
-std::vector<Run> runs_of(const Object& object) {
-    std::vector<Run> runs;
-    for (size_t i = 0; i < object.shapes.size(); ++i) {
-        const Shape& shape = object.shapes[i];
-        if (shape.mesh.size() == 0)
-            continue;
-        if (runs.empty() || !belongs(runs.back(), shape))
-            runs.push_back({i, i, 0, shape.material, !shape.mesh.normals.empty(), shape.sight});
-        runs.back().last = i + 1;
-        runs.back().last_size = shape.mesh.size();
-        runs.back().triangles += uint32_t(shape.mesh.size());
-        runs.back().normals_left_out += shape.mesh.normals_left_out;
-        runs.back().texture_coordinates_left_out += shape.mesh.texture_coordinates_left_out;
-    }
-    return runs;
-}
 
 Box bounds_of(const Object& object) {
     Box bounds;
@@ -90,17 +42,6 @@ Box moved(const Box& box, const dmat4& by) {
     }
     return result;
 }
-
-/// Turns corners in double into offsets in float.
-struct Frame {
-    dvec3 origin{0};
-    double lattice = 0; // the lattice's step; 0: no lattice
-
-    vec3 offset(const dvec3& p) const {
-        const dvec3 offset = p - origin;
-        return vec3(lattice > 0 ? glm::round(offset / lattice) * lattice : offset);
-    }
-};
 
 /// Returns the size of an instance, the same however it is turned: at least half of any extent.
 double size_of(const Box& local, const dmat4& place) {
@@ -155,55 +96,11 @@ std::vector<PlacedObject> placed_objects(const World& world, const Census& censu
     return found;
 }
 
-/// Returns corner i of the triangle; if `flipped`, corners 1 and 2 change places.
-size_t nth_corner(size_t triangle, size_t i, bool flipped) {
-    assert(i < 3);
-    return 3 * triangle + (flipped && i > 0 ? 3 - i : i);
-}
-
-/// Writes three corners per triangle to `to`. If `mirrored_place`, a later transform will mirror
-/// the corners, so triangles are turned round.
-void write_corners(const Shape& shape, const dmat4& place, const Frame& frame, bool mirrored_place,
-                   vec3* to) {
-    const dmat4 m = place * shape.to_object;
-    const bool mirrored = swaps_handedness(m) != mirrored_place;
-    parallel_for(shape.mesh.size(), 1024, [&](size_t first, size_t last) {
-        for (size_t t = first; t < last; ++t) {
-            const bool flipped = is_flipped(shape, t) != mirrored;
-            vec3 corners[3]; // a copy, because `to` may be the mesh's own corners
-            for (size_t i = 0; i < 3; ++i)
-                corners[i] =
-                    frame.offset(point_through(m, shape.mesh.corner(nth_corner(t, i, flipped))));
-            std::copy(corners, corners + 3, to + 3 * t);
-        }
-    });
-}
-
-/// Writes normals in the object's coordinates, in the order of write_corners().
-void write_normals(const Shape& shape, bool mirrored_place, vec3* to) {
-    assert(shape.mesh.size() == 0 || !shape.mesh.normals.empty());
-    const dmat3 turn = normal_matrix(shape.to_object);
-    const bool mirrored = swaps_handedness(shape.to_object) != mirrored_place;
-    const auto usable = [](const dvec3& n) { return ovc::is_finite(n) && glm::dot(n, n) > 0; };
-    for (size_t t = 0; t < shape.mesh.size(); ++t) {
-        const bool flipped = is_flipped(shape, t) != mirrored;
-        for (size_t i = 0; i < 3; ++i) {
-            dvec3 n = turn * dvec3(shape.mesh.normal(nth_corner(t, i, flipped)));
-            if (!usable(n)) {
-                const dvec3 a = shape.mesh.corner(3 * t);
-                n = turn *
-                    glm::cross(shape.mesh.corner(3 * t + 1) - a, shape.mesh.corner(3 * t + 2) - a);
-            }
-            to[3 * t + i] = usable(n) ? vec3(glm::normalize(n)) : vec3(0);
-        }
-    }
-}
-
 std::vector<vec3> normals_of(const Object& object, const Run& run, bool mirrored_place) {
     std::vector<vec3> normals(run.has_normals ? size_t(run.triangles) * 3 : 0);
     vec3* to = normals.data();
     for (size_t i = run.first; i < run.last && run.has_normals; ++i) {
-        write_normals(object.shapes[i], mirrored_place, to);
+        write_normals(object.shapes[i], mirrored_place, 0, object.shapes[i].mesh.size(), to);
         to += 3 * object.shapes[i].mesh.size();
     }
     assert(to == normals.data() + normals.size());
@@ -213,13 +110,8 @@ std::vector<vec3> normals_of(const Object& object, const Run& run, bool mirrored
 /// Returns texture coordinates in the order of write_corners(); none where there are no holes.
 std::vector<vec2> uv_of(const Object& object, const Run& run, bool mirrored_place) {
     std::vector<vec2> uv;
-    for (size_t i = run.first; i < run.last && run.sight.has_cutout(); ++i) {
-        const Shape& shape = object.shapes[i];
-        const bool mirrored = swaps_handedness(shape.to_object) != mirrored_place;
-        for (size_t t = 0; t < shape.mesh.size(); ++t)
-            for (size_t k = 0; k < 3; ++k)
-                uv.push_back(shape.mesh.uv_of(nth_corner(t, k, is_flipped(shape, t) != mirrored)));
-    }
+    for (size_t i = run.first; i < run.last && run.sight.has_cutout(); ++i)
+        append_uv(object.shapes[i], mirrored_place, uv);
     return uv;
 }
 
@@ -243,8 +135,7 @@ std::vector<vec3> corners_of(const Object& object, const Run& run, const dmat4& 
 }
 
 const std::string& name_of(const Object& object, const Run& run) {
-    const std::string& name = object.shapes[run.first].mesh.name;
-    return run.last == run.first + 1 && !name.empty() ? name : object.name;
+    return run.last == run.first + 1 && !run.name.empty() ? run.name : object.name;
 }
 
 /// Adds the world's own shapes. Each run's memory moves to the soup or is given back before the
@@ -308,7 +199,8 @@ void share_uv(const Object& object, Run& run, bool mirrored, uint32_t mesh, Scen
 /// Adds an instance's meshes. `frame` is that of the corners: the object's if the instances share
 /// them, else one in the world.
 void add_instance(const Object& object, std::vector<Run>& runs, const PlacedObject& instance,
-                  const Frame& frame, bool shares_corners, Scene& scene) {
+                  const Frame& frame, bool shares_corners, MeshOutput& output) {
+    Scene& scene = output.scene();
     const bool mirrored = swaps_handedness(instance.place);
     dmat3 turn = normal_matrix(instance.place);
     const double largest =
@@ -322,8 +214,8 @@ void add_instance(const Object& object, std::vector<Run>& runs, const PlacedObje
                 ? placed_chunk(object, run, instance, frame, mirrored, scene)
                 : Chunk::owning(frame.origin, corners_of(object, run, instance.place, frame));
         const uint32_t mesh =
-            scene.add_mesh(name_of(object, run), run.material, std::move(chunk),
-                           shares ? std::vector<vec3>() : normals_of(object, run, mirrored));
+            output.add_mesh(name_of(object, run), run.material, std::move(chunk),
+                            shares ? std::vector<vec3>() : normals_of(object, run, mirrored));
         if (shares_corners && run.corners_from[mirrored] == kNone)
             run.corners_from[mirrored] = mesh;
         run.tell_left_out(scene.meshes[mesh]);
@@ -339,9 +231,21 @@ void add_instance(const Object& object, std::vector<Run>& runs, const PlacedObje
     }
 }
 
+/// Adds the world's own shapes that are streamed.
+void add_streamed(Object& top, StreamedShapes& shapes, const Frame& frame, MeshOutput& output) {
+    for (size_t i = 0; i < shapes.runs().size() && output.is_wanted(); ++i) {
+        const Run& run = shapes.runs()[i];
+        const uint32_t mesh = output.begin_mesh(name_of(top, run), run.material, frame.origin);
+        shapes.pass_on(i, frame, output);
+        output.scene().meshes[mesh].uv = shapes.take_uv(i);
+        set_sight(run, mesh, output.scene());
+        run.tell_left_out(output.scene().meshes[mesh]);
+    }
+}
+
 } // namespace
 
-void assemble(World world, const Census& census, Scene& scene) {
+void assemble(World world, const Census& census, MeshOutput& output, StreamedShapes* streamed) {
     assert(census.within.size() == world.objects.size());
     assert(census.shared.size() == world.objects.size());
     const std::vector<PlacedObject> instances = placed_objects(world, census);
@@ -351,19 +255,23 @@ void assemble(World world, const Census& census, Scene& scene) {
         boxes.push_back(bounds_of(object));
         runs.push_back(runs_of(object));
     }
-    Box bounds = bounds_of(world.top);
+    Box bounds = streamed ? streamed->bounds() : bounds_of(world.top);
     for (const PlacedObject& p : instances)
         bounds.add(moved(boxes[p.object], p.place));
     const Frame common{chunk_origin(bounds, kFar)};
 
-    add_top(world.top, common, scene);
+    if (streamed)
+        add_streamed(world.top, *streamed, common, output);
+    else
+        add_top(world.top, common, output.scene());
     for (const PlacedObject& p : instances) {
         const Box& box = boxes[p.object];
         const bool shares_corners = census.shared[p.object] && is_affine(p.place);
+        assert(!shares_corners || !streamed);
         add_instance(world.objects[p.object], runs[p.object], p,
                      shares_corners ? Frame{chunk_origin(box, kFar)}
                                     : frame_of(box, p.place, common.origin),
-                     shares_corners, scene);
+                     shares_corners, output);
     }
 }
 

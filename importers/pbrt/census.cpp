@@ -19,6 +19,9 @@ constexpr uint64_t kSaturated = std::numeric_limits<uint64_t>::max();
 /// The memory of a triangle's corners; and of an instance's chunk, mesh and transform.
 constexpr uint64_t kTriangleBytes = 36, kInstanceBytes = 512;
 
+/// The memory that reading and building take for a triangle (plugin/out_of_core/host_budget.h).
+constexpr uint64_t kBytesToConvert = 500;
+
 uint64_t plus(uint64_t a, uint64_t b) {
     return a > kSaturated - b ? kSaturated : a + b;
 }
@@ -28,7 +31,7 @@ uint64_t times(uint64_t a, uint64_t b) {
 }
 
 uint64_t own_triangles(const Object& object) {
-    uint64_t count = 0;
+    uint64_t count = object.streamed;
     for (const Shape& shape : object.shapes)
         count += shape.mesh.size();
     return count;
@@ -80,7 +83,7 @@ Census take_census(const World& world) {
     return census;
 }
 
-Result<Done> check_census(const Census& census, uint64_t most) {
+Result<Done> check_census(const Census& census, uint64_t most, bool is_held) {
     const std::string what =
         fmt::format("{} triangles once {} instances of {} are expanded", shown(census.triangles),
                     shown(census.instances), shown(census.unique));
@@ -93,9 +96,22 @@ Result<Done> check_census(const Census& census, uint64_t most) {
         plus(times(census.kept, kTriangleBytes),
              times(std::min(census.instances, census.triangles), kInstanceBytes));
     const uint64_t available = available_memory();
-    if (bytes > available)
+    if (is_held && bytes > available)
         return Error{fmt::format("found {}, which take {} MiB where {} MiB of memory are free",
                                  what, bytes >> 20, available >> 20)};
+    return Done{};
+}
+
+Result<Done> check_conversion(const Census& census, uint64_t host_bytes) {
+    const uint64_t bytes =
+        plus(times(census.kept, kBytesToConvert),
+             times(std::min(census.instances, census.triangles), kInstanceBytes));
+    if (bytes > host_bytes)
+        return Error{fmt::format("found objects that share their triangles, which is built in "
+                                 "memory alone: {} triangles and {} instances take {} bytes of "
+                                 "host memory, and {} are allowed: the smallest number that works "
+                                 "is {}",
+                                 census.kept, shown(census.instances), bytes, host_bytes, bytes)};
     return Done{};
 }
 

@@ -39,6 +39,7 @@ struct Object {
     std::string name;
     std::vector<Shape> shapes;
     std::vector<Instance> instances;
+    uint64_t streamed = 0; // triangles of shapes that StreamedShapes has, not this
 };
 
 struct World {

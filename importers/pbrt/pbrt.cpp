@@ -2,7 +2,6 @@
 // The PBRT reader reads the scene descriptions of pbrt-v1 to v4, as docs/reference/pbrt.md says.
 #include "importers/pbrt/assembly.h"
 #include "importers/pbrt/interpret/interpreter.h"
-#include "importers/pbrt/look/exposure.h"
 #include "importers/readers.h"
 #include "importers/sound_meshes.h"
 
@@ -16,11 +15,21 @@ namespace ovc {
 /// repeats so often brings some triangles, so their limit bounds the includes as well.
 static constexpr uint64_t kTrianglesOfAnInclude = 100;
 
+/// Reads a scene that was found not to stream once more. Its warnings have been said.
+static Result<Scene> read_held(const std::filesystem::path& path, ImportOptions options) {
+    options.log = {};
+    options.streaming = nullptr;
+    return read_pbrt(path, options);
+}
+
 Result<Scene> read_pbrt(const std::filesystem::path& path, const ImportOptions& options) {
     pbrt::Diagnostics diagnostics(options.log, options.strict);
     pbrt::Tokens tokens(path.parent_path(), diagnostics, options.files,
                         options.max_triangles / kTrianglesOfAnInclude);
-    pbrt::Interpreter interpreter(tokens, diagnostics, options);
+    std::optional<pbrt::StreamedShapes> streamed;
+    if (options.streaming)
+        streamed.emplace(*options.streaming);
+    pbrt::Interpreter interpreter(tokens, diagnostics, options, streamed ? &*streamed : nullptr);
     if (!tokens.open(path) || !interpreter.run())
         return diagnostics.error();
 
@@ -32,16 +41,27 @@ Result<Scene> read_pbrt(const std::filesystem::path& path, const ImportOptions& 
     pbrt::World world = interpreter.take_world();
     world.top.name = scene.name;
     const pbrt::Census census = pbrt::take_census(world);
-    if (const Result<Done> fine = pbrt::check_census(census, options.max_triangles); !fine)
+    Result<Done> fine = pbrt::check_census(census, options.max_triangles, !streamed);
+    const bool is_to_be_held = streamed && census.shares_corners();
+    if (fine && is_to_be_held)
+        fine = pbrt::check_conversion(census, options.streaming->host_bytes);
+    if (!fine)
         return Error{fmt::format("{}: {}", path.string(), fine.error().message)};
-    pbrt::assemble(std::move(world), census, scene);
-    assert(has_sound_meshes(scene));
-    if (const float exposure = pbrt::fitting_exposure(scene); exposure != 1) {
+    if (is_to_be_held)
+        return read_held(path, options);
+    pbrt::MeshOutput output(scene, census.triangles, options.streaming);
+    pbrt::assemble(std::move(world), census, output, streamed ? &*streamed : nullptr);
+    if (streamed && streamed->error())
+        return *streamed->error();
+    if (!output.is_wanted())
+        return Error{"cancelled", ErrorKind::Cancelled};
+    assert(streamed || has_sound_meshes(scene));
+    if (const float exposure = output.exposure(); exposure != 1) {
         pbrt::expose(scene, exposure);
         scene.exposure = exposure;
     }
     scene.instancing = {census.unique, census.instances};
-    if (scene.soup.triangle_count() == 0)
+    if (census.triangles == 0)
         say(options.log, LogLevel::Warning, fmt::format("{}: it has no triangles", path.string()));
     return scene;
 }

@@ -18,7 +18,7 @@ bool walk_scene_together(const BuiltScene& scene, RaySet all, Prepared&& prepare
         return walk_tree_together(scene.top, units_of, scene_leaf(scene.level1.bounds), all,
                                   prepared, visit, limit);
     };
-    // Two walks, because a question at each link would cost one in memory a sixth of its time.
+    // Two walks, so that the one in memory asks nothing at its links.
     if (!scene.store)
         return walk([&](uint32_t page) { return scene.pages[page].view().data(); });
     PageCache::Pin here;

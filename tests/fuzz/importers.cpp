@@ -9,6 +9,7 @@
 #include "tests/fuzz/require.h"
 
 #include <string>
+#include <vector>
 
 #include <sys/mman.h>
 #include <unistd.h>
@@ -60,28 +61,43 @@ void check_size(const Result<Scene>& scene, const uint8_t* data, size_t size) {
 namespace {
 
 struct CountingSink final : TriangleSink {
-    uint64_t meshes = 0, corners = 0, normals = 0;
+    uint64_t corners = 0;
+    size_t mesh = 0;
+    std::vector<uint64_t> normals; // of each mesh
 
-    void begin_mesh() override { ++meshes; }
+    void begin_mesh() override {
+        normals.push_back(0);
+        mesh = normals.size() - 1;
+    }
+    void go_on_with(size_t which) override {
+        require(which < normals.size());
+        mesh = which;
+    }
+    void drop_normals(size_t which) override { normals.at(which) = 0; }
     bool add_corners(std::span<const vec3> some) override {
         corners += some.size();
         return true;
     }
     bool add_normals(std::span<const vec3> some) override {
-        normals += some.size();
+        normals.at(mesh) += some.size();
         return true;
     }
 };
 
-/// A file that streams is refused where one that is held is, or has as many triangles.
-void check_stream(const Result<Scene>& held, const std::string& path) {
+/// A file that streams is refused where one that is held is, or has as many triangles and normals.
+void check_stream(const Result<Scene>& held, const std::string& path,
+                  Result<Scene> (*read)(const std::filesystem::path&, const ImportOptions&)) {
     CountingSink sink;
     const Streaming streaming{sink, ~uint64_t(0)};
-    const Result<Scene> streamed = read_ply(path, {.streaming = &streaming});
+    const Result<Scene> streamed = read(path, {.streaming = &streaming});
     require(bool(held) == bool(streamed));
     require(held || held.error().message == streamed.error().message);
-    require(!held || (sink.meshes == 1 && sink.corners == 3 * held->soup.triangle_count() &&
-                      sink.normals == held->meshes[0].normals.size()));
+    if (!held)
+        return;
+    require(sink.corners == 3 * held->soup.triangle_count());
+    require(sink.normals.size() == held->meshes.size());
+    for (size_t m = 0; m < held->meshes.size(); ++m)
+        require(sink.normals[m] == held->meshes[m].normals.size());
 }
 
 } // namespace
@@ -92,14 +108,16 @@ void fuzz_ply(const uint8_t* data, size_t size) {
     const Result<Scene> scene = read_ply(path, {});
     check(scene);
     check_size(scene, data, size);
-    check_stream(scene, path);
+    check_stream(scene, path, read_ply);
 }
 
 void fuzz_obj(const uint8_t* data, size_t size) {
     static const MemoryFile file("fuzz.obj");
-    const Result<Scene> scene = read_obj(file.holding(data, size), {});
+    const std::string path = file.holding(data, size);
+    const Result<Scene> scene = read_obj(path, {});
     check(scene);
     check_size(scene, data, size);
+    check_stream(scene, path, read_obj);
 }
 
 Scene scene_with_everything() {

@@ -13,7 +13,7 @@
 namespace ovc::pbrt {
 
 /// The max depth of AttributeBegin and its like; scenes have a few dozen levels.
-static constexpr size_t kDeepest = 10000;
+static constexpr size_t kDeepestScope = 10000;
 
 const Interpreter::Directive Interpreter::kDirectives[] = {
     {"Accelerator", &Interpreter::setting},
@@ -192,9 +192,9 @@ bool Interpreter::read_typed(std::string& type, Parameters& parameters) {
 }
 
 bool Interpreter::begin(Scope scope) {
-    if (state_.depth() >= kDeepest)
-        return diagnostics_.fail(place_,
-                                 fmt::format("found more than {} levels in each other", kDeepest));
+    if (state_.depth() >= kDeepestScope)
+        return diagnostics_.fail(
+            place_, fmt::format("found more than {} levels in each other", kDeepestScope));
     state_.push(scope);
     return true;
 }

@@ -9,6 +9,7 @@
 #include "importers/pbrt/look/materials.h"
 #include "importers/pbrt/objects.h"
 #include "importers/pbrt/shapes/shapes.h"
+#include "importers/pbrt/streamed_shapes.h"
 
 #include <string_view>
 #include <unordered_map>
@@ -17,8 +18,10 @@ namespace ovc::pbrt {
 
 class Interpreter {
 public:
-    Interpreter(Tokens& tokens, Diagnostics& diagnostics, const ImportOptions& options)
-        : tokens_(tokens), diagnostics_(diagnostics), options_(options) {}
+    /// streamed: takes the world's own shapes; null where the world is to hold them.
+    Interpreter(Tokens& tokens, Diagnostics& diagnostics, const ImportOptions& options,
+                StreamedShapes* streamed)
+        : tokens_(tokens), diagnostics_(diagnostics), options_(options), streamed_(streamed) {}
 
     /// Reads everything, once. Returns false after an error, which the diagnostics hold.
     bool run();
@@ -97,12 +100,14 @@ private:
     /// Returns which rays see a shape with these parameters; nothing if none does.
     std::optional<Sight> sight_of(const Parameters& parameters);
     bool add_shape(Mesh mesh, const Sight& sight);
+    bool store(Shape shape);
     bool bind_late_instances();
     Object& object() { return building_.empty() ? world_.top : building_.back(); }
 
     Tokens& tokens_;
     Diagnostics& diagnostics_;
     const ImportOptions& options_;
+    StreamedShapes* const streamed_;
     Place place_; // of the directive at hand
     bool known_one_ = false;
     bool moves_ = false; // a transform of something in the scene does

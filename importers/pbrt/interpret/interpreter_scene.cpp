@@ -74,7 +74,21 @@ bool Interpreter::add_shape(Mesh mesh, const Sight& sight) {
     } else if (now.emission) {
         diagnostics_.approximate("emitting objects", place_, "emission of instances left out");
     }
-    object().shapes.push_back(std::move(shape));
+    return store(std::move(shape));
+}
+
+bool Interpreter::store(Shape shape) {
+    const bool is_of_world = building_.empty();
+    if (streamed_) {
+        const Result<Done> fine =
+            is_of_world ? streamed_->add(shape, place_) : streamed_->keep(shape, place_);
+        if (!fine)
+            return diagnostics_.fail(fine.error());
+    }
+    if (streamed_ && is_of_world)
+        world_.top.streamed = streamed_->triangles();
+    else
+        object().shapes.push_back(std::move(shape));
     return true;
 }
 

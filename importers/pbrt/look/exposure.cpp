@@ -80,33 +80,38 @@ double radiance_of(const Scene& scene, const Material& material, const Triangle&
 
 } // namespace
 
-float fitting_exposure(const Scene& scene) {
-    if (!scene.camera || !scene.camera->window || scene.lights.empty())
-        return 1;
-    assert(scene.meshes.size() == scene.soup.chunks.size());
-    const uint64_t step = scene.soup.triangle_count() / kSamples + 1;
-    double weights = 0, sum = 0;
-    uint64_t number = 0;
-    for (size_t m = 0; m < scene.soup.chunks.size(); ++m) {
-        const Chunk& chunk = scene.soup.chunks[m];
-        const Material& material = scene.materials[scene.meshes[m].material];
-        const bool is_lit = !material.finish || material.finish->diffuse > 0;
-        for (uint64_t p = (step - number % step) % step; is_lit && p < chunk.size(); p += step) {
-            const Triangle t = chunk.triangle(uint32_t(p));
-            const dvec3 middle = (t[0] + t[1] + t[2]) / 3.0;
-            const double weight =
-                triangle_fault(t) == TriangleFault::None ? weight_in(*scene.camera, t, middle) : 0;
-            if (!(weight > 0))
-                continue;
-            sum += weight * radiance_of(scene, material, t, middle);
-            weights += weight;
-        }
-        number += chunk.size();
+ExposureMeter::ExposureMeter(const Scene& scene, uint64_t triangles)
+    : scene_(scene), step_(triangles / kSamples + 1) {}
+
+void ExposureMeter::add(const Chunk& chunk, const Material& material) {
+    const bool can_see = scene_.camera && scene_.camera->window && !scene_.lights.empty();
+    const bool is_lit = can_see && (!material.finish || material.finish->diffuse > 0);
+    for (uint64_t p = (step_ - number_ % step_) % step_; is_lit && p < chunk.size(); p += step_) {
+        const Triangle t = chunk.triangle(uint32_t(p));
+        const dvec3 middle = (t[0] + t[1] + t[2]) / 3.0;
+        const double weight =
+            triangle_fault(t) == TriangleFault::None ? weight_in(*scene_.camera, t, middle) : 0;
+        if (!(weight > 0))
+            continue;
+        sum_ += weight * radiance_of(scene_, material, t, middle);
+        weights_ += weight;
     }
-    const double mean = weights > 0 ? sum / weights : 0;
+    number_ += chunk.size();
+}
+
+float ExposureMeter::exposure() const {
+    const double mean = weights_ > 0 ? sum_ / weights_ : 0;
     if (!(mean > 0) || (mean >= kDarkest && mean <= kBrightest))
         return 1;
     return float(std::min(kWanted / mean, kMaxExposure));
+}
+
+float fitting_exposure(const Scene& scene) {
+    assert(scene.meshes.size() == scene.soup.chunks.size());
+    ExposureMeter meter(scene, scene.soup.triangle_count());
+    for (size_t m = 0; m < scene.soup.chunks.size(); ++m)
+        meter.add(scene.soup.chunks[m], scene.materials[scene.meshes[m].material]);
+    return meter.exposure();
 }
 
 void expose(Scene& scene, float exposure) {
