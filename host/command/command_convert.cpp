@@ -185,8 +185,8 @@ public:
         log_.add_to(app, /* with_quiet= */ true);
         backend_.add_to(
             app, "For .ovc of .ply, .obj, .pbrt and landscape-N: the most host memory to use, 2G, "
-                 "besides "
-                 "what the program and the driver take; the triangles wait on the disk of OUT");
+                 "besides what the program and the driver take; the triangles wait on the disk of "
+                 "OUT");
         app.footer(kConvertExamples);
     }
 
