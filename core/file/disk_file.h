@@ -34,6 +34,8 @@ public:
     ~DiskFile();
 
     uint64_t bytes() const { return bytes_; }
+    /// Returns the system's number of the file, which stays open while this lives.
+    int descriptor() const { return descriptor_; }
     /// Returns false where the system refuses; error() then says why.
     bool read(uint64_t offset, std::span<std::byte> to) const;
     /// Returns the first failure, which names the file; nothing where there was none.
