@@ -21,8 +21,7 @@ public:
 
     bool has_doubles() const override { return false; }
     bool read(uint32_t first, std::span<std::byte> to) const override {
-        constexpr uint64_t kTriangleBytes = 36;
-        if (file_.read(offset_ + first * kTriangleBytes, to))
+        if (file_.read(offset_ + first * uint64_t(triangle_bytes()), to))
             return true;
         std::ranges::fill(to, std::byte(0));
         return false;

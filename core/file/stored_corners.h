@@ -13,8 +13,9 @@ class StoredCorners {
 public:
     virtual ~StoredCorners() = default;
 
-    /// Whether offsets are doubles, 72 bytes a triangle; else they are floats, 36.
+    /// Whether offsets are doubles; else they are floats.
     virtual bool has_doubles() const = 0;
+    size_t triangle_bytes() const { return has_doubles() ? 72 : 36; }
     /// Reads the corners of whole triangles from `first` on, as many as fit into `to` exactly. Any
     /// number of threads may call this. Where they cannot be read, it returns false, `to` becomes
     /// zeros, which no ray hits, and the owner of the corners knows why.

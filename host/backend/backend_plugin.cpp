@@ -119,9 +119,8 @@ private:
 /// Reads corners of a mesh that is stored, which is the user of the C function.
 static int read_corners(void* user, uint64_t first, uint64_t count, void* corners) {
     const StoredCorners& stored = *static_cast<const StoredCorners*>(user);
-    const size_t triangle_bytes = stored.has_doubles() ? 72 : 36;
     return stored.read(uint32_t(first),
-                       {static_cast<std::byte*>(corners), size_t(count) * triangle_bytes})
+                       {static_cast<std::byte*>(corners), size_t(count) * stored.triangle_bytes()})
                ? 0
                : 1;
 }

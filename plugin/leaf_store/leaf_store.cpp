@@ -18,23 +18,23 @@ public:
          ReadCorners read)
         : number(number_),
           triangles(triangles_),
-          triangle_bytes(has_doubles ? 72 : 36),
           read_corners(std::move(read)),
-          store_(store) {}
+          store_(store),
+          has_doubles_(has_doubles) {}
 
-    bool has_doubles() const override { return triangle_bytes == 72; }
+    bool has_doubles() const override { return has_doubles_; }
     bool read(uint32_t first, std::span<std::byte> to) const override {
         return store_.copy_corners(*this, first, to);
     }
 
     const uint32_t number;
     const uint64_t triangles;
-    const size_t triangle_bytes;
     const ReadCorners read_corners;
     uint64_t first_sum = 0; // of its blocks
 
 private:
     LeafStore& store_;
+    const bool has_doubles_;
 };
 
 LeafStore::LeafStore(uint64_t budget_bytes, ReadBytes read, uint64_t saved_bytes)
@@ -80,7 +80,7 @@ void LeafStore::set_sums(const CornerSums& sums) {
 Result<Done> LeafStore::open(std::vector<PagePlace> pages, CheckPage check, uint64_t table_bytes) {
     size_t triangle_bytes = 1;
     for (const auto& mesh : meshes_)
-        triangle_bytes = std::max(triangle_bytes, mesh->triangle_bytes);
+        triangle_bytes = std::max(triangle_bytes, mesh->triangle_bytes());
     const uint64_t block_bytes = kCornerBlock * triangle_bytes;
     uint64_t all_pages = 1, largest = 1;
     std::vector<uint64_t> page_bytes;
@@ -145,7 +145,7 @@ Result<Done> LeafStore::fill_page(uint32_t number, std::span<std::byte> to) {
 bool LeafStore::fill_block(const Mesh& mesh, uint32_t block, std::span<std::byte> to) {
     const uint64_t first = uint64_t(block) * kCornerBlock;
     const uint64_t count = std::min<uint64_t>(kCornerBlock, mesh.triangles - first);
-    const auto corners = to.first(count * mesh.triangle_bytes);
+    const auto corners = to.first(count * mesh.triangle_bytes());
     const auto failed = [&](const char* how) {
         fail({format_text("the corners of triangles {} to {} of mesh {} {}", first,
                           first + count - 1, mesh.number, how)});
@@ -161,7 +161,7 @@ bool LeafStore::fill_block(const Mesh& mesh, uint32_t block, std::span<std::byte
 
 bool LeafStore::copy_corners(const Mesh& mesh, uint32_t first, std::span<std::byte> to) {
     if (!corner_cache_) {
-        const uint64_t count = to.size() / mesh.triangle_bytes;
+        const uint64_t count = to.size() / mesh.triangle_bytes();
         count_read(to.size());
         if (mesh.read_corners(first, count, to.data()))
             return true;
@@ -173,18 +173,18 @@ bool LeafStore::copy_corners(const Mesh& mesh, uint32_t first, std::span<std::by
     bool all = true;
     while (!to.empty()) {
         const uint32_t block = first / kCornerBlock, within = first % kCornerBlock;
-        const size_t bytes = std::min(to.size(), (kCornerBlock - within) * mesh.triangle_bytes);
+        const size_t bytes = std::min(to.size(), (kCornerBlock - within) * mesh.triangle_bytes());
         const auto part = to.first(bytes);
         const auto fill = [&](std::span<std::byte> whole) {
             return fill_block(mesh, block, whole);
         };
-        if (!corner_cache_->copy(mesh.first_sum + block, within * mesh.triangle_bytes, part,
+        if (!corner_cache_->copy(mesh.first_sum + block, within * mesh.triangle_bytes(), part,
                                  fill)) {
             std::ranges::fill(part, std::byte(0));
             all = false;
         }
         to = to.subspan(bytes);
-        first += uint32_t(bytes / mesh.triangle_bytes);
+        first += uint32_t(bytes / mesh.triangle_bytes());
     }
     return all;
 }
