@@ -293,11 +293,11 @@ uint64_t checksum_of(const Scene& scene) {
     for (size_t m = 0; m < scene.meshes.size(); ++m) {
         if (extents[m].corners > 0)
             sum.add(bytes_of(scene.soup.chunks[m].corners()));
-        if (scene.on_disk)
-            sum.add_value(scene.on_disk->corners_checksum);
         sum.add(bytes_of(std::span<const vec3>(scene.meshes[m].normals)));
         sum.add(bytes_of(std::span<const vec2>(scene.meshes[m].uv)));
     }
+    if (scene.on_disk)
+        sum.add_value(scene.on_disk->corners_checksum);
     return sum.value();
 }
 
