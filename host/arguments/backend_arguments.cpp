@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // --backend, --gpu-memory, --host-memory, --leaf-triangles, --leaves, --device, --precision,
-// --kernel, --level1,
-// --level1-build.
+// --kernel, --level1, --level1-build.
 #include "host/arguments/backend_arguments.h"
 #include "core/text/suggestion.h"
 #include "host/arguments/arguments.h"

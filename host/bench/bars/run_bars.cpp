@@ -12,6 +12,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 namespace ovc {
 
 namespace {
@@ -64,13 +66,15 @@ public:
 
     Result<BarsResult> run() {
         using Step = Result<Done> (BarsRun::*)();
-        std::vector<Step> steps = {&BarsRun::import, &BarsRun::kernels, &BarsRun::leaves,
-                                   &BarsRun::leaves_of_scenes};
-        if (!job_.mesh_alone)
-            steps.insert(steps.end(),
-                         {&BarsRun::high_quality, &BarsRun::default_leaves, &BarsRun::budget});
-        steps.insert(steps.end(), {&BarsRun::build, &BarsRun::programs, &BarsRun::rest});
-        for (const Step step : steps) {
+        const std::pair<Step, bool> steps[] = {
+            {&BarsRun::import, true},           {&BarsRun::kernels, true},
+            {&BarsRun::high_quality, false},    {&BarsRun::leaves, true},
+            {&BarsRun::leaves_of_scenes, true}, {&BarsRun::default_leaves, false},
+            {&BarsRun::budget, false},          {&BarsRun::build, true},
+            {&BarsRun::programs, true},         {&BarsRun::rest, true}};
+        for (const auto& [step, is_about_mesh] : steps) {
+            if (job_.scene_alone && !is_about_mesh)
+                continue;
             if (around_.stop())
                 break;
             if (const Result<Done> done = (this->*step)(); !done)
@@ -188,7 +192,7 @@ private:
             contenders.back().leaves = {leaves, std::to_string(leaves)};
         }
         std::vector<std::string> scenes = {job_.mesh};
-        if (!job_.mesh_alone)
+        if (!job_.scene_alone)
             scenes.insert(scenes.end(), {"plants-2", kArchitecture, "city", "dragons-2"});
         for (const std::string& scene : scenes) {
             if (around_.stop())

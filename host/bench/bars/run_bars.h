@@ -15,7 +15,7 @@ struct BarsJob {
     std::string device;
     uint32_t size = 1024; // pixels a side; half of it for slivers, architecture and programs
     uint32_t repeats = 5;
-    bool mesh_alone = false; // leaves out the lines about test scenes
+    bool scene_alone = false; // leaves out the lines about test scenes
 };
 
 struct BarsResult {
