@@ -5,12 +5,11 @@
 
 #include "importers/readers.h"
 #include "importers/test_files.h"
+#include "tests/file_size_limit.h"
 
-#include <sys/resource.h>
 #include <sys/stat.h>
 
 #include <bit>
-#include <csignal>
 #include <numbers>
 #include <random>
 
@@ -312,20 +311,16 @@ TEST(Save, ErrorsNameTheFileAndWhatWasExpected) {
 TEST(Save, AFailedWriteLeavesTheOldFileAndNothingElse) {
     const TestFolder folder;
     folder.write("kept.obj", kObj);
-    // Like a full disk, a limit on the size of files makes writes fail.
     std::vector<vec3> corners(300000, vec3(0.5f));
     for (size_t i = 0; i < corners.size(); ++i)
         corners[i].x = float(i);
     Scene scene;
     scene.materials.emplace_back();
     scene.add_mesh("large", 0, Chunk::owning(dvec3(0), std::move(corners)));
-    rlimit before{};
-    getrlimit(RLIMIT_FSIZE, &before);
-    const rlimit limit{1 << 20, before.rlim_max};
-    std::signal(SIGXFSZ, SIG_IGN);
-    setrlimit(RLIMIT_FSIZE, &limit);
-    const auto done = save(scene, folder / "kept.obj");
-    setrlimit(RLIMIT_FSIZE, &before);
+    const auto done = [&] {
+        const test::FileSizeLimit limit(1 << 20);
+        return save(scene, folder / "kept.obj");
+    }();
     ASSERT_FALSE(done);
     EXPECT_EQ(folder.plain(done.error().message), "kept.obj: cannot be written: File too large");
     EXPECT_EQ(std::distance(fs::directory_iterator(folder / ""), fs::directory_iterator()), 1);

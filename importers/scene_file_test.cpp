@@ -57,18 +57,26 @@ TEST(SceneFile, GivesBackEveryField) {
     EXPECT_EQ(reinterpret_cast<uintptr_t>(file->scene.saved.data()) % kPartAlignment, 0u);
 }
 
+const std::vector<vec3> kTwoTriangles{{0, 0, 0}, {1, 0, 0}, {0, 1, 0},
+                                      {0, 0, 1}, {1, 0, 1}, {0, 1, 1}};
+
+/// Returns a scene whose mesh "a" has these corners, and normals.
+Scene scene_of_two_triangles() {
+    Scene scene;
+    scene.name = "three";
+    scene.materials.emplace_back();
+    scene.add_mesh("a", 0, Chunk::owning(dvec3(1, 2, 3), kTwoTriangles),
+                   std::vector<vec3>(6, vec3(0, 0, 1)));
+    return scene;
+}
+
 /// Corners and normals that lie in a store make the same file as those that a scene holds.
 TEST(SceneFile, IsTheSameOfAStore) {
     const TestFolder folder;
-    Scene held;
-    held.name = "three";
-    held.materials.emplace_back();
-    const std::vector<vec3> corners{{0, 0, 0}, {1, 0, 0}, {0, 1, 0},
-                                    {0, 0, 1}, {1, 0, 1}, {0, 1, 1}};
-    const std::vector<vec3> normals(6, vec3(0, 0, 1));
-    held.add_mesh("a", 0, Chunk::owning(dvec3(1, 2, 3), corners), normals);
+    Scene held = scene_of_two_triangles();
     held.add_mesh("b", 0, Chunk::owning(dvec3(0), {}));
-    held.add_mesh("c", 0, Chunk::owning(dvec3(4), {corners.begin(), corners.begin() + 3}));
+    held.add_mesh("c", 0,
+                  Chunk::owning(dvec3(4), {kTwoTriangles.begin(), kTwoTriangles.begin() + 3}));
     Scene empty;
     empty.name = held.name;
     empty.materials = held.materials;
@@ -92,18 +100,13 @@ TEST(SceneFile, IsTheSameOfAStore) {
 /// Corners and levels stay on the disk, and are read from there.
 TEST(SceneFile, IsTheSameSceneOnADisk) {
     const TestFolder folder;
-    Scene held;
-    held.name = "three";
-    held.materials.emplace_back();
-    const std::vector<vec3> corners{{0, 0, 0}, {1, 0, 0}, {0, 1, 0},
-                                    {0, 0, 1}, {1, 0, 1}, {0, 1, 1}};
-    const std::vector<vec3> normals(6, vec3(0, 0, 1));
-    held.add_mesh("a", 0, Chunk::owning(dvec3(1, 2, 3), corners), normals);
+    Scene held = scene_of_two_triangles();
     held.add_mesh("b", 0, held.soup.chunks[0].instance());
     Transform moved = kIdentity;
     moved.rows[1][3] = 5;
     held.soup.chunks[1].place(moved);
-    held.add_mesh("c", 0, Chunk::owning(dvec3(4), {corners.begin() + 1, corners.begin() + 4}));
+    held.add_mesh("c", 0,
+                  Chunk::owning(dvec3(4), {kTwoTriangles.begin() + 1, kTwoTriangles.begin() + 4}));
     const std::string levels = "what was built";
     ASSERT_TRUE(write_scene_file(
         held, {},

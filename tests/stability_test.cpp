@@ -66,7 +66,7 @@ void compare_with_exact(const StabilityCase& one) {
     const std::vector<TriangleId> ids = hittable_triangles(soup, nullptr, nullptr);
     const KdTree tree = build_kd_tree(soup);
     // A ray costs a box test for every triangle, and exact arithmetic for every triangle nearby.
-    const size_t sample = std::clamp<size_t>(60'000 / soup.triangle_count(), 6, 40);
+    const size_t sample = std::clamp<size_t>(120'000 / soup.triangle_count(), 8, 60);
     const AimedRays set = stability_rays(one, soup, 0, sample);
     size_t wrong = 0;
     for (size_t i = 0; i < sample; ++i) {

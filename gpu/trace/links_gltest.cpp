@@ -22,7 +22,7 @@ protected:
             return;
         Box bounds;
         ids = hittable_triangles(soup, nullptr, &bounds);
-        level1 = partition(soup, ids, bounds, uint32_t(ids.size() / 20));
+        level1 = partition(soup, ids, bounds, uint32_t(ids.size() / 40));
         share_frame(level1);
         uint64_t largest = 0;
         for (const Leaf& leaf : level1.leaves) {
@@ -139,7 +139,7 @@ TEST_P(LinksGl, ARayIsDoneWithEachLeafForGood) {
         ASSERT_TRUE(test::same(rays[i].hit, test::brute_force(soup, ids, rays[i].ray)))
             << "ray " << i;
     }
-    EXPECT_GT(waits, rays.size() * 9 / 10);
+    EXPECT_GT(waits, rays.size());
     EXPECT_GT(decided, rays.size() * 9 / 10);
 }
 

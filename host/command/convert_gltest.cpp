@@ -4,15 +4,14 @@
 #include "host/arguments/arguments.h"
 #include "host/command/command.h"
 #include "host/terminal/interrupt.h"
+#include "tests/file_size_limit.h"
 
 #include <gmock/gmock.h>
 
-#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <string>
-#include <sys/resource.h>
 #include <unistd.h>
 
 namespace ovc {
@@ -177,22 +176,18 @@ TEST_F(ConvertUnderABudget, ErrorsAreSentencesAndLeaveNothing) {
     }
 }
 
-/// The limit of a file's size stands for a full disk, at any point of the conversion.
+/// It is full at any point of the conversion.
 TEST_F(ConvertUnderABudget, AFullDiskIsASentenceAndLeavesNothing) {
     ASSERT_EQ(error({"convert", "sphere-7", path("a.ply"), "--quiet"}), "");
-    rlimit before{};
-    getrlimit(RLIMIT_FSIZE, &before);
-    const auto handler = std::signal(SIGXFSZ, SIG_IGN);
     for (const rlim_t most : {4u << 20, 13u << 20, 24u << 20}) {
-        const rlimit small{most, before.rlim_max};
-        setrlimit(RLIMIT_FSIZE, &small);
-        const std::string sentence =
-            error({"convert", path("a.ply"), path("b.ovc"), "--host-memory", "48M"});
-        setrlimit(RLIMIT_FSIZE, &before);
-        EXPECT_THAT(sentence, testing::EndsWith("File too large")) << most;
+        {
+            const test::FileSizeLimit limit(most);
+            EXPECT_THAT(error({"convert", path("a.ply"), path("b.ovc"), "--host-memory", "48M"}),
+                        testing::EndsWith("File too large"))
+                << most;
+        }
         EXPECT_EQ(files(), 1u) << most;
     }
-    std::signal(SIGXFSZ, handler);
 }
 
 } // namespace

@@ -2,17 +2,15 @@
 // TriangleStore and ScratchFile: what went in comes out, nothing is left behind, and a disk that
 // fails is a sentence.
 #include "importers/file/triangle_store.h"
+#include "tests/file_size_limit.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <csignal>
 #include <cstring>
 #include <functional>
 #include <vector>
-
-#include <sys/resource.h>
 
 namespace ovc {
 namespace {
@@ -119,14 +117,9 @@ TEST(TriangleStore, TellsThatThereIsNoSuchFolder) {
                                      "file or directory");
 }
 
-/// The limit of a file's size stands for a full disk.
 TEST(TriangleStore, TellsThatTheDiskIsFull) {
     const Folder folder;
-    rlimit before{};
-    getrlimit(RLIMIT_FSIZE, &before);
-    const auto handler = std::signal(SIGXFSZ, SIG_IGN);
-    const rlimit small{1 << 20, before.rlim_max};
-    setrlimit(RLIMIT_FSIZE, &small);
+    const test::FileSizeLimit limit(1 << 20);
     Result<TriangleStore> store = TriangleStore::create(folder.path);
     ASSERT_TRUE(store);
     store->begin_mesh();
@@ -135,8 +128,6 @@ TEST(TriangleStore, TellsThatTheDiskIsFull) {
     for (int i = 0; i < 3 && wanted; ++i)
         wanted = store->add_corners(corners);
     const Result<Done> finished = store->finish();
-    setrlimit(RLIMIT_FSIZE, &before);
-    std::signal(SIGXFSZ, handler);
     EXPECT_FALSE(wanted);
     ASSERT_FALSE(finished);
     EXPECT_THAT(finished.error().message, testing::EndsWith("failed: File too large"));

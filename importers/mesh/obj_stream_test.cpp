@@ -2,12 +2,10 @@
 // An OBJ file that streams gives its sink the triangles of one that is held, also where vertices
 // and normals lie on the disk.
 #include "importers/expect_stream.h"
+#include "tests/file_size_limit.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
-
-#include <csignal>
-#include <sys/resource.h>
 
 namespace ovc {
 namespace {
@@ -120,21 +118,14 @@ TEST(ObjStream, RefusesMoreMeshesThanTheMemoryHolds) {
               "bytes of host memory each, and may take a quarter of 8000");
 }
 
-/// The limit of a file's size stands for a full disk.
 TEST(ObjStream, TellsThatTheDiskIsFull) {
     const TestFolder folder;
     const auto path = folder.write("a.obj", vertices(60'000) + faces(60'000, kWithNormal));
-    rlimit before{};
-    getrlimit(RLIMIT_FSIZE, &before);
-    const auto handler = std::signal(SIGXFSZ, SIG_IGN);
-    const rlimit small{300'000, before.rlim_max};
-    setrlimit(RLIMIT_FSIZE, &small);
+    const test::FileSizeLimit limit(300'000);
     FullSink sink;
     sink.wanted = 1000;
-    const std::string sentence = streamed_error(path, sink, kLittle).message;
-    setrlimit(RLIMIT_FSIZE, &before);
-    std::signal(SIGXFSZ, handler);
-    EXPECT_THAT(sentence, testing::EndsWith("the scratch file there failed: File too large"));
+    EXPECT_THAT(streamed_error(path, sink, kLittle).message,
+                testing::EndsWith("the scratch file there failed: File too large"));
 }
 
 } // namespace

@@ -2,12 +2,10 @@
 // A PBRT file that streams becomes the same scene file as one that is held; objects that share
 // their triangles are held, or refused in a sentence.
 #include "importers/expect_stream.h"
+#include "tests/file_size_limit.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
-
-#include <csignal>
-#include <sys/resource.h>
 
 namespace ovc {
 namespace {
@@ -154,19 +152,12 @@ TEST(PbrtStream, EndsWhereTheSinkWantsNoMore) {
     EXPECT_EQ(sink.parts, 1);
 }
 
-/// The limit of a file's size stands for a full disk.
 TEST(PbrtStream, TellsThatTheDiskIsFull) {
     const TestFolder folder;
     const auto path = folder.write("a.pbrt", kCamera + repeated(300, grid(20)));
-    rlimit before{};
-    getrlimit(RLIMIT_FSIZE, &before);
-    const auto handler = std::signal(SIGXFSZ, SIG_IGN);
-    const rlimit small{5'000'000, before.rlim_max};
-    setrlimit(RLIMIT_FSIZE, &small);
+    const test::FileSizeLimit limit(5'000'000);
     FullSink sink;
     const Result<Scene> scene = streamed(path, sink, 5 << 20);
-    setrlimit(RLIMIT_FSIZE, &before);
-    std::signal(SIGXFSZ, handler);
     ASSERT_FALSE(scene);
     EXPECT_THAT(scene.error().message,
                 testing::EndsWith("the scratch file there failed: File too large"));

@@ -96,6 +96,7 @@ protected:
 TEST_F(Plan, OfMeshes) {
     compare_all("sphere-6");
     compare_all("terrain-300");
+    compare_all("knot");
 }
 
 TEST_F(Plan, OfSoupAndSlivers) {

@@ -161,7 +161,7 @@ TEST_F(Commit, AnswersSoonWhereverItIsCancelled) {
     Listener listener;
     const auto made = test::add_soup(device, scene->soup, listener.config());
     double longest = 0;
-    for (double stop_at = 0.02; stop_at < 1; stop_at += 0.32) {
+    for (double stop_at = 0.02; stop_at < 1; stop_at += 0.16) {
         listener.stop_at = stop_at;
         listener.last = -1;
         ASSERT_EQ(api().commit(made.get()), OVC_ERROR_CANCELLED);
