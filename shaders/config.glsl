@@ -16,6 +16,9 @@
 #ifndef OVC_PORTALS
 #define OVC_PORTALS 0
 #endif
+#ifndef OVC_FAR_TRIANGLES
+#define OVC_FAR_TRIANGLES 0 // 1: some portals lead to far triangles
+#endif
 #ifndef OVC_MAY_WAIT
 #define OVC_MAY_WAIT 0 // 1: a ray waits if a link leads to a page that is not in the pool
 #endif

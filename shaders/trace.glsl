@@ -126,8 +126,9 @@ void trace_once(int ray) {
     give_answers(ray, packet, found, ended && !d.lost);
 }
 #else
-// Rounds between two looks at which lanes have an answer; more if taking up new rays costs more.
-const int OVC_REFILL_ROUNDS = OVC_PACKET > 1 ? 5 : 3;
+// Rounds between two looks at which lanes have an answer or have come to a portal; more if taking
+// up new rays costs more, or going through portals.
+const int OVC_REFILL_ROUNDS = OVC_PACKET > 1 ? 5 : (OVC_PORTALS != 0 ? 5 : 3);
 
 // Traces the rays from `begin` to before `end` by the lanes of a subgroup. Now and then the lanes
 // that have an answer go on to the next rays that no lane has taken, so that lanes do not wait for

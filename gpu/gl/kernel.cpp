@@ -133,6 +133,7 @@ std::string ShaderConfig::defines() const {
     return format_text("#define OVC_ANY_HIT {}\n"
                        "#define OVC_CERTIFY {}\n"
                        "#define OVC_PORTALS {}\n"
+                       "#define OVC_FAR_TRIANGLES {}\n"
                        "#define OVC_MAY_WAIT {}\n"
                        "#define OVC_TELL_ACTIVE {}\n"
                        "#define OVC_LOOSE_PAIRS {}\n"
@@ -147,9 +148,9 @@ std::string ShaderConfig::defines() const {
                        "#define OVC_DEAL_GROUPS {}\n"
                        "#define OVC_BUFFER_IMAGES {}\n"
                        "#define OVC_MAX_ROUNDS {}\n",
-                       any_hit, certify, portals, may_wait, tell_active, loose_pairs, pool_buffers,
-                       each_buffer, buffer_bits, stack_depth, stack_registers, packet, refill,
-                       branches, deal_groups, buffer_images, max_rounds);
+                       any_hit, certify, portals, far_triangles, may_wait, tell_active, loose_pairs,
+                       pool_buffers, each_buffer, buffer_bits, stack_depth, stack_registers, packet,
+                       refill, branches, deal_groups, buffer_images, max_rounds);
 }
 
 Result<gl::Program> link_program(std::span<const ShaderStage> stages, const std::string& defines) {

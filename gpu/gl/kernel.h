@@ -24,6 +24,7 @@ struct ShaderConfig {
     bool any_hit = false;
     bool certify = true;
     bool portals = false;
+    bool far_triangles = false; // behind portals
     bool may_wait = false;
     bool tell_active = false;
     bool loose_pairs = false;

@@ -313,6 +313,7 @@ ShaderConfig Tracer::shader_config() const {
     config.any_hit = any_hit_;
     config.certify = options_.certify;
     config.portals = has_portals();
+    config.far_triangles = !top_.far_triangles.empty();
     config.may_wait = may_wait();
     config.tell_active = active_buffer_.has_value();
     config.pool_buffers = pool_.layout().count();
