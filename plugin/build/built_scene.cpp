@@ -7,7 +7,9 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <iterator>
 #include <limits>
+#include <numeric>
 #include <optional>
 
 namespace ovc {
@@ -16,24 +18,33 @@ BuiltScene::BuiltScene(const Soup& soup_) : soup(soup_), numbers(soup_) {}
 BuiltScene::~BuiltScene() = default;
 BuiltScene::BuiltScene(BuiltScene&&) = default;
 
-SharedMesh& BuiltScene::share(const Placed::Instances& instances, const Box& box) {
-    assert(!instances.empty());
+SharedMesh& BuiltScene::share(const Placed::Shared& meshes) {
+    assert(!meshes.places.empty());
     mesh_of_chunk.resize(soup.chunks.size(), kNone);
-    for (const uint32_t chunk : instances)
-        mesh_of_chunk[chunk] = uint32_t(shared.size());
+    meshes.for_each_chunk([&](uint32_t chunk) { mesh_of_chunk[chunk] = uint32_t(shared.size()); });
     auto local = std::make_unique<Soup>();
-    local->chunks.push_back(soup.chunks[instances.front()].unplaced());
+    for (uint32_t i = 0; i < meshes.chunks; ++i)
+        local->chunks.push_back(soup.chunks[meshes.places.front() + i].unplaced());
     BuiltScene cut(*local);
-    cut.once = {0};
-    shared.push_back(
-        {.soup = std::move(local), .scene = std::move(cut), .instances = instances, .box = box});
+    cut.once.resize(meshes.chunks);
+    std::iota(cut.once.begin(), cut.once.end(), 0u);
+    shared.push_back({.soup = std::move(local),
+                      .scene = std::move(cut),
+                      .places = meshes.places,
+                      .box = meshes.box});
     return shared.back();
 }
 
+uint32_t SharedMesh::place_of(uint32_t chunk) const {
+    if (soup->chunks.size() == 1)
+        return chunk;
+    return *std::prev(std::ranges::upper_bound(places, chunk));
+}
+
 bool SharedMesh::lies_at_rest(const BuiltScene& all) const {
-    if (!rest || instances.size() != 1)
+    if (!rest || places.size() != 1)
         return false;
-    const uint32_t chunk = instances.front();
+    const uint32_t chunk = places.front();
     return rest_place().rows == or_identity(all.soup.chunks[chunk].transform()).rows &&
            scene.numbers.first() == all.numbers.of({chunk, 0});
 }
@@ -47,6 +58,7 @@ bool SharedMesh::has_frame_of(const BuiltScene& all) const {
 }
 
 void SharedMesh::put_to_rest(const Transform& place, uint32_t first_number) {
+    assert(soup->chunks.size() == 1);
     auto placed = std::make_unique<Soup>();
     placed->chunks.push_back(soup->chunks.front().instance());
     placed->chunks.front().place_anew(place);
@@ -62,9 +74,10 @@ const SharedMesh* BuiltScene::shared_mesh_of(uint32_t chunk) const {
 
 TriangleId BuiltScene::next_duplicate(TriangleId id, TriangleId after) const {
     const SharedMesh* mesh = shared_mesh_of(id.mesh);
-    const auto others = mesh ? mesh->scene.duplicates.of({0, id.prim}) : duplicates.of(id);
+    const uint32_t place = mesh ? mesh->place_of(id.mesh) : 0;
+    const auto others = mesh ? mesh->scene.duplicates.of(mesh->local(id)) : duplicates.of(id);
     const auto of_pair = [&](const Duplicates::Pair& pair) {
-        return mesh ? TriangleId{id.mesh, pair.other.prim} : pair.other;
+        return TriangleId{place + pair.other.mesh, pair.other.prim};
     };
     // The first behind `after` of those that are built; those before it may have copies there.
     const auto next = std::ranges::upper_bound(others, after, {}, of_pair);
@@ -142,7 +155,7 @@ uint32_t BuiltScene::page_at(const dvec3& point, TriangleId id) const {
         return leaf_at(level1, point, id);
     const std::vector<Leaf>& leaves = mesh->scene.level1.leaves;
     for (uint32_t i = 0; i < leaves.size(); ++i)
-        if (std::ranges::binary_search(leaves[i].list(), TriangleId{0, id.prim}))
+        if (std::ranges::binary_search(leaves[i].list(), mesh->local(id)))
             return mesh->first_page + i;
     return kNone;
 }
@@ -157,7 +170,7 @@ uint64_t BuiltScene::reference_count() const {
 uint64_t BuiltScene::unique_triangles() const {
     uint64_t count = soup.triangle_count();
     for (const SharedMesh& mesh : shared)
-        count -= (mesh.instances.size() - 1) * mesh.soup->triangle_count();
+        count -= (mesh.places.size() - 1) * mesh.soup->triangle_count();
     for (const Placed::Copies& there : copies)
         count -= (there.size() - 1) * soup.chunks[there.front()].size();
     return count;
@@ -166,7 +179,7 @@ uint64_t BuiltScene::unique_triangles() const {
 uint64_t BuiltScene::duplicate_count() const {
     uint64_t count = duplicates.count();
     for (const SharedMesh& mesh : shared)
-        count += mesh.scene.duplicates.count() * mesh.instances.size();
+        count += mesh.scene.duplicates.count() * mesh.places.size();
     for (const Placed::Copies& there : copies)
         count += (there.size() - 1) * soup.chunks[there.front()].size();
     return count;
@@ -188,24 +201,34 @@ uint64_t BuiltScene::host_bytes() const {
 
 namespace {
 
-/// Returns those triangles of a mesh, in [first, end), whose three corners differ but lie on a
-/// line. Where the mesh is placed, rounding may give them an area.
-std::vector<uint32_t> on_a_line(const Chunk& mesh, uint32_t first, uint32_t end) {
+/// Returns those of some triangles of a mesh whose three corners differ but lie on a line. Where
+/// the mesh is placed, rounding may give them an area.
+std::vector<TriangleId> on_a_line(const Soup& soup, const PrimRange& among) {
     return parallel_reduce(
-        end - first, std::vector<uint32_t>(),
-        [&](size_t from, size_t to, std::vector<uint32_t> prims) {
-            for (auto prim = uint32_t(first + from); prim < first + to; ++prim) {
-                const Triangle t = mesh.triangle(prim);
+        among.end - among.first, std::vector<TriangleId>(),
+        [&](size_t from, size_t to, std::vector<TriangleId> found) {
+            for (auto prim = uint32_t(among.first + from); prim < among.first + to; ++prim) {
+                const Triangle t = soup.triangle({among.mesh, prim});
                 if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0] &&
                     triangle_fault(t) == TriangleFault::Degenerate)
-                    prims.push_back(prim);
+                    found.push_back({among.mesh, prim});
             }
-            return prims;
+            return found;
         },
-        [](std::vector<uint32_t> a, const std::vector<uint32_t>& b) {
+        [](std::vector<TriangleId> a, const std::vector<TriangleId>& b) {
             a.insert(a.end(), b.begin(), b.end());
             return a;
         });
+}
+
+/// Returns the same of all triangles.
+std::vector<TriangleId> on_a_line(const Soup& soup) {
+    std::vector<TriangleId> found;
+    for (uint32_t mesh = 0; mesh < soup.chunks.size(); ++mesh) {
+        const std::vector<TriangleId> more = on_a_line(soup, {mesh, 0, soup.chunks[mesh].size()});
+        found.insert(found.end(), more.begin(), more.end());
+    }
+    return found;
 }
 
 /// Takes the triangles of shared meshes, and finds those that must be cut with the others because
@@ -215,8 +238,8 @@ public:
     explicit SharedParts(BuiltScene& scene) : scene_(scene) {}
 
     void take(const Placed& placed, std::vector<Hittable>& hittable, BuildProgress* progress) {
-        for (size_t i = 0; i < placed.shared.size(); ++i) {
-            SharedMesh& mesh = scene_.share(placed.shared[i], placed.boxes[i]);
+        for (const Placed::Shared& meshes : placed.shared) {
+            SharedMesh& mesh = scene_.share(meshes);
             hittable.push_back(take_hittable(mesh.scene, progress));
             mesh.scene.seconds_level1 = 0; // the scene's own count includes it
             look_for_lines(mesh);
@@ -230,19 +253,20 @@ public:
 private:
     void note(const SharedMesh& mesh, const Box& box) {
         const BuiltScene& local = mesh.scene;
-        std::vector<uint32_t> lines;
+        std::vector<TriangleId> lines;
         if (mesh.has_lines)
-            lines = on_a_line(local.soup.chunks.front(), 0, local.soup.chunks.front().size());
-        for (const uint32_t chunk : mesh.instances) {
+            lines = on_a_line(local.soup);
+        for (const uint32_t place : mesh.places) {
             scene_.dropped.not_finite += local.dropped.not_finite;
             scene_.dropped.degenerate += local.dropped.degenerate;
             if (!box.empty())
-                bounds_.add(placed_box(box, scene_.soup.chunks[chunk].transform()));
-            for (const uint32_t prim : lines) {
-                const Triangle triangle = scene_.soup.triangle({chunk, prim});
+                bounds_.add(placed_box(box, scene_.soup.chunks[place].transform()));
+            for (const TriangleId& line : lines) {
+                const TriangleId id{place + line.mesh, line.prim};
+                const Triangle triangle = scene_.soup.triangle(id);
                 if (triangle_fault(triangle) != TriangleFault::None)
                     continue;
-                by_themselves_.push_back({chunk, prim});
+                by_themselves_.push_back(id);
                 bounds_.add(bounds_of(triangle));
                 assert(scene_.dropped.degenerate > 0); // the mesh's count, added above, has it
                 scene_.dropped.degenerate -= 1;
@@ -289,9 +313,12 @@ HittableParts take_hittable_parts(BuiltScene& scene, Placed placed, BuildProgres
     return parts;
 }
 
-void look_for_lines(SharedMesh& mesh, uint32_t first, uint32_t end) {
-    mesh.has_lines = mesh.scene.dropped.degenerate > 0 &&
-                     !on_a_line(mesh.soup->chunks.front(), first, end).empty();
+void look_for_lines(SharedMesh& mesh, const PrimRange& among) {
+    mesh.has_lines = mesh.scene.dropped.degenerate > 0 && !on_a_line(*mesh.soup, among).empty();
+}
+
+void look_for_lines(SharedMesh& mesh) {
+    mesh.has_lines = mesh.scene.dropped.degenerate > 0 && !on_a_line(*mesh.soup).empty();
 }
 
 namespace {
@@ -316,18 +343,18 @@ void add_left(Parts& parts, const BuiltScene& scene, const SharedMesh& mesh) {
     const Box box = box_around_pages(level);
     const Transform back = *inverse(mesh.rest_place());
     std::vector<Portal> into;
-    for (const uint32_t chunk : mesh.instances) {
-        const Transform moved = then(back, or_identity(scene.soup.chunks[chunk].transform()));
+    for (const uint32_t place : mesh.places) {
+        const Transform moved = then(back, or_identity(scene.soup.chunks[place].transform()));
         into.push_back(portal_into(level.level1.leaves.front().frame, box, &moved));
-        into.back().first_number = scene.numbers.of({chunk, 0}) - level.numbers.first();
+        into.back().first_number = scene.numbers.of({place, 0}) - level.numbers.first();
     }
     parts.add({mesh.first_page, uint32_t(level.pages.size())}, into);
 }
 
 void add_unplaced(Parts& parts, const BuiltScene& scene, const SharedMesh& mesh) {
     std::vector<Place> places;
-    for (const uint32_t chunk : mesh.instances)
-        places.push_back({scene.soup.chunks[chunk].transform(), scene.numbers.of({chunk, 0})});
+    for (const uint32_t place : mesh.places)
+        places.push_back({scene.soup.chunks[place].transform(), scene.numbers.of({place, 0})});
     parts.add(mesh.scene.level1, mesh.first_page, places);
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "core/build_progress.h"
+#include "core/changes.h"
 #include "core/duplicates.h"
 #include "core/exact/triangle.h"
 #include "core/numbering.h"
@@ -130,10 +131,9 @@ struct BuiltScene {
     /// Returns the same for a ray with these exclusions, of which the kernel is told one.
     uint32_t number_to_skip(const Ray& ray, const Exclusion& without) const;
 
-    /// Adds the shared mesh of these chunks (not empty), of which nothing is built yet. box: of its
-    /// triangles, not placed.
-    SharedMesh& share(const Placed::Instances& instances, const Box& box);
-    /// Returns the shared mesh that the chunk is an instance of; null where there is none.
+    /// Adds these shared meshes, of which nothing is built yet.
+    SharedMesh& share(const Placed::Shared& meshes);
+    /// Returns the shared meshes of which the chunk is an instance; null where there are none.
     const SharedMesh* shared_mesh_of(uint32_t chunk) const;
     /// Returns the page around a point of the triangle, one that holds the triangle where there is
     /// such a page; kNone where the point lies in no page.
@@ -180,25 +180,32 @@ private:
     std::optional<TriangleId> first_copy_behind(TriangleId built, TriangleId after) const;
 };
 
-/// A mesh that lies in several places, or moves; cut and packed by itself.
+/// A mesh, or several that lie together, in several places, or one that moves; cut and packed by
+/// itself.
 struct SharedMesh {
-    std::unique_ptr<const Soup> soup; // of one chunk, not placed
-    BuiltScene scene;                 // of that soup; pages number its triangles within the mesh
-    Placed::Instances instances;
-    uint32_t first_page = 0; // in the pages of the whole scene
+    std::unique_ptr<const Soup> soup; // a chunk for each mesh, not placed
+    BuiltScene scene;                 // of that soup; pages number its triangles
+    std::vector<uint32_t> places;     // the first chunk of each in the whole scene, sorted
+    uint32_t first_page = 0;          // in the pages of the whole scene
     /// There are triangles on a line, which may get an area where an instance is placed. Those are
     /// cut with the triangles that are placed once.
     bool has_lines = false;
     Box box; // of its triangles, not placed
-    /// The mesh as it was placed when it came to rest: its pages lie there, in the frame of the
-    /// scene, and have the scene's numbers. Null where it never did.
+    /// The mesh, which is one, as it was placed when it came to rest: its pages lie there, in the
+    /// frame of the scene, and have the scene's numbers. Null where it never did.
     std::unique_ptr<const Soup> rest;
     /// It still lies there, so its pages hang in the scene's own tree.
     bool is_home = false;
     uint32_t commits_in_place = 0; // since it was placed last
     bool is_doubtful = false;      // the frame of the scene does not suit it where it is
 
-    /// Whether it is the only instance, and lies where it came to rest. all: the whole scene.
+    size_t instances() const { return places.size() * soup->chunks.size(); }
+    /// Returns the first chunk of the place in which a chunk of the whole scene lies.
+    uint32_t place_of(uint32_t chunk) const;
+    /// Returns the triangle of the whole scene in the soup here.
+    TriangleId local(TriangleId id) const { return {id.mesh - place_of(id.mesh), id.prim}; }
+
+    /// Whether it lies in one place, where it came to rest. all: the whole scene.
     bool lies_at_rest(const BuiltScene& all) const;
     /// Whether its pages lie in the scene's home.
     bool has_frame_of(const BuiltScene& all) const;
@@ -228,11 +235,10 @@ struct HittableParts {
 HittableParts take_hittable_parts(BuiltScene& scene, Placed placed,
                                   BuildProgress* progress = nullptr);
 
-/// Finds out whether the mesh, whose triangles are taken, has_lines among [first, end) of them.
-void look_for_lines(SharedMesh& mesh, uint32_t first, uint32_t end);
-inline void look_for_lines(SharedMesh& mesh) {
-    look_for_lines(mesh, 0, mesh.soup->chunks.front().size());
-}
+/// Finds out whether the mesh, whose triangles are taken, has_lines among some of them.
+void look_for_lines(SharedMesh& mesh, const PrimRange& among);
+/// The same among all.
+void look_for_lines(SharedMesh& mesh);
 
 /// Finds the home of a scene whose levels are there: the frame that level 1's leaves share, or that
 /// of meshes at rest if there are no such leaves.

@@ -135,7 +135,7 @@ bool Resting::comes_home(SharedMesh& mesh, uint32_t chunk) const {
 }
 
 std::optional<bool> Resting::prepare(SharedMesh& mesh) {
-    const uint32_t chunk = mesh.instances.front();
+    const uint32_t chunk = mesh.places.front();
     if (comes_home(mesh, chunk)) {
         bring_home(mesh, chunk);
         return true;
@@ -143,9 +143,9 @@ std::optional<bool> Resting::prepare(SharedMesh& mesh) {
     if (!mesh.rest || mesh.scene.level1.leaves.empty())
         return false;
     const Box& frame = mesh.scene.level1.leaves.front().grid;
-    const bool is_near = std::ranges::all_of(mesh.instances, [&](uint32_t instance) {
-        return is_well_moved(mesh.rest_place(),
-                             or_identity(scene_.soup.chunks[instance].transform()), frame);
+    const bool is_near = std::ranges::all_of(mesh.places, [&](uint32_t place) {
+        return is_well_moved(mesh.rest_place(), or_identity(scene_.soup.chunks[place].transform()),
+                             frame);
     });
     return is_near ? std::optional(false) : std::nullopt;
 }

@@ -25,7 +25,7 @@ namespace {
 constexpr std::string_view kKind = "ovc levels";
 /// The version must be raised when a build makes other leaves or pages of the same soup. A change
 /// of layout.h is noticed without that.
-constexpr uint32_t kVersion = 11;
+constexpr uint32_t kVersion = 12;
 
 /// A build makes the same levels where all of its key is the same.
 struct Key {
@@ -274,8 +274,7 @@ bool can_rest(const SharedMesh& mesh, const Soup& soup) {
     const auto& leaves = mesh.scene.level1.leaves;
     if (!mesh.rest || leaves.empty())
         return true;
-    return mesh.scene.level1.shares_frame &&
-           std::ranges::all_of(mesh.instances, [&](uint32_t chunk) {
+    return mesh.scene.level1.shares_frame && std::ranges::all_of(mesh.places, [&](uint32_t chunk) {
                return is_well_moved(mesh.rest_place(), or_identity(soup.chunks[chunk].transform()),
                                     leaves.front().grid);
            });
@@ -291,10 +290,12 @@ Result<BuiltScene> restored(Arrays arrays, std::span<const SavedCut> cuts, const
     if (cuts.size() != 1 + placed.shared.size())
         return kUnsound;
     for (size_t i = 0; i < placed.shared.size(); ++i) {
-        SharedMesh& mesh = scene.share(placed.shared[i], placed.boxes[i]);
+        SharedMesh& mesh = scene.share(placed.shared[i]);
         const SavedCut& cut = cuts[i + 1];
+        if (cut.rests && placed.shared[i].chunks > 1)
+            return kUnsound;
         if (cut.rests)
-            mesh.put_to_rest(cut.rest_place, scene.numbers.of({mesh.instances.front(), 0}));
+            mesh.put_to_rest(cut.rest_place, scene.numbers.of({mesh.places.front(), 0}));
         if (!CutReader(cut, arrays, mesh.scene).read() || !can_rest(mesh, soup))
             return kUnsound;
         look_for_lines(mesh);

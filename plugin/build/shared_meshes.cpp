@@ -8,6 +8,8 @@
 
 #include <algorithm>
 #include <map>
+#include <span>
+#include <utility>
 
 namespace ovc {
 namespace {
@@ -75,35 +77,84 @@ void take_copies_out(const Soup& soup, std::vector<uint32_t>& chunks, Placed& pl
     chunks = std::move(apart);
 }
 
+/// Whether the chunks of the mesh lie where those of the meshes before it do, each behind them.
+bool lie_with(const Soup& soup, const Placed::Shared& before, std::span<const uint32_t> chunks) {
+    return std::ranges::equal(before.places, chunks, [&](uint32_t first, uint32_t chunk) {
+        return chunk == first + before.chunks &&
+               or_identity(soup.chunks[chunk].transform()).rows ==
+                   or_identity(soup.chunks[first].transform()).rows;
+    });
+}
+
+/// Returns all meshes, those that lie together in several places as one. One that moves is alone.
+/// The boxes are yet to be found.
+std::vector<Placed::Shared> lying_together(const Soup& soup, Placed& placed) {
+    std::vector<Placed::Shared> found;
+    bool before_moves = true;
+    for (std::vector<uint32_t>& chunks : by_mesh(soup)) {
+        if (chunks.size() > 1)
+            take_copies_out(soup, chunks, placed);
+        const bool moves =
+            std::ranges::any_of(chunks, [&](uint32_t chunk) { return soup.chunks[chunk].moves(); });
+        if (chunks.size() > 1 && !moves && !before_moves && lie_with(soup, found.back(), chunks))
+            ++found.back().chunks;
+        else
+            found.push_back({.places = std::move(chunks)});
+        before_moves = moves;
+    }
+    return found;
+}
+
+/// Returns the number of triangles in one place.
+uint64_t triangles_of(const Soup& soup, const Placed::Shared& meshes) {
+    uint64_t count = 0;
+    for (uint32_t i = 0; i < meshes.chunks; ++i)
+        count += soup.chunks[meshes.places.front() + i].size();
+    return count;
+}
+
+/// Returns the box of the meshes before they are placed, empty where a corner is not finite.
+Box box_of(const Soup& soup, const Placed::Shared& meshes, const KnownBox& known_box) {
+    Box all;
+    for (uint32_t i = 0; i < meshes.chunks; ++i) {
+        const uint32_t chunk = meshes.places.front() + i;
+        const std::optional<Box> known = known_box ? known_box(chunk) : std::nullopt;
+        const Box box = known ? *known : bounds_of(soup.chunks[chunk].unplaced());
+        if (box.empty())
+            return {};
+        all.add(box);
+    }
+    return all;
+}
+
 } // namespace
 
 Placed placed_chunks(const Soup& soup, const KnownBox& known_box) {
     Placed placed;
-    for (std::vector<uint32_t>& chunks : by_mesh(soup)) {
-        if (chunks.size() > 1)
-            take_copies_out(soup, chunks, placed);
-        const Chunk& mesh = soup.chunks[chunks.front()];
-        const uint64_t saved = (chunks.size() - 1) * kBytesPerTriangle * mesh.size();
-        const bool pays = saved > kWorthAPortal * kMaxBytesPerPart * chunks.size();
+    for (Placed::Shared& meshes : lying_together(soup, placed)) {
         const auto moves = [&](uint32_t chunk) { return soup.chunks[chunk].moves(); };
-        const bool any_moves = std::ranges::any_of(chunks, moves);
-        std::vector<uint32_t> shared;
-        Box box;
-        if (pays || any_moves) {
-            const std::optional<Box> known = known_box ? known_box(chunks.front()) : std::nullopt;
-            box = known ? *known : bounds_of(mesh.unplaced());
+        const size_t places = meshes.places.size();
+        const uint64_t saved = (places - 1) * kBytesPerTriangle * triangles_of(soup, meshes);
+        const bool pays = saved > kWorthAPortal * kMaxBytesPerPart * places;
+        const bool any_moves = std::ranges::any_of(meshes.places, moves);
+        if (pays || any_moves)
+            meshes.box = box_of(soup, meshes, known_box);
+        std::vector<uint32_t> shared, once;
+        for (const uint32_t place : meshes.places) {
+            const bool may_share = (pays || moves(place)) &&
+                                   is_well_placed(meshes.box, soup.chunks[place].transform());
+            (may_share ? shared : once).push_back(place);
         }
-        for (const uint32_t chunk : chunks) {
-            const bool may_share =
-                (pays || moves(chunk)) && is_well_placed(box, soup.chunks[chunk].transform());
-            (may_share ? shared : placed.once).push_back(chunk);
+        if (shared.size() == 1 && !any_moves) {
+            once.push_back(shared.front());
+            shared.clear();
         }
-        if (shared.size() > 1 || (any_moves && !shared.empty())) {
-            placed.shared.push_back(std::move(shared));
-            placed.boxes.push_back(box);
-        } else {
-            placed.once.insert(placed.once.end(), shared.begin(), shared.end());
-        }
+        meshes.places = std::move(once);
+        meshes.for_each_chunk([&](uint32_t chunk) { placed.once.push_back(chunk); });
+        if (shared.empty())
+            continue;
+        meshes.places = std::move(shared);
+        placed.shared.push_back(std::move(meshes));
     }
     std::ranges::sort(placed.once);
     std::ranges::sort(placed.copies);
@@ -114,8 +165,8 @@ uint64_t unique_triangles(const Soup& soup, const Placed& placed) {
     uint64_t count = 0;
     for (const uint32_t chunk : placed.once)
         count += soup.chunks[chunk].size();
-    for (const Placed::Instances& instances : placed.shared)
-        count += soup.chunks[instances.front()].size();
+    for (const Placed::Shared& meshes : placed.shared)
+        count += triangles_of(soup, meshes);
     return count;
 }
 

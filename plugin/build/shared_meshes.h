@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Finds the meshes of a soup that lie in several places. Each is cut and packed once, where it lies
-// without a transform, and portals lead to its places.
+// without a transform, and portals lead to its places. Meshes that lie together in every place, as
+// the shapes of an object do, are shared together: a ray goes through one portal to them all.
 #pragma once
 
 #include "core/soup.h"
@@ -17,13 +18,24 @@ struct Placed {
     /// Chunks of the same mesh that lie exactly in the same place: sorted, at least two. Only the
     /// first is built.
     using Copies = std::vector<uint32_t>;
-    /// The chunks of one mesh, each in a place of its own.
-    using Instances = std::vector<uint32_t>; // sorted
+    /// Some meshes that are shared together. Their chunks in a place follow each other.
+    struct Shared {
+        std::vector<uint32_t> places; // the first chunk of each, sorted
+        uint32_t chunks = 1;          // in each place
+        Box box;                      // of the triangles, not placed
 
-    std::vector<uint32_t> once;    // sorted; their triangles are cut together
-    std::vector<Instances> shared; // in the order of their meshes
-    std::vector<Box> boxes;        // of the triangles of each of them, not placed
-    std::vector<Copies> copies;    // sorted
+        /// Calls visit(chunk) for each chunk of all places.
+        template <class Visit>
+        void for_each_chunk(Visit&& visit) const {
+            for (const uint32_t place : places)
+                for (uint32_t i = 0; i < chunks; ++i)
+                    visit(place + i);
+        }
+    };
+
+    std::vector<uint32_t> once; // sorted; their triangles are cut together
+    std::vector<Shared> shared; // in the order of their meshes
+    std::vector<Copies> copies; // sorted
 };
 
 /// Returns how the chunks of a soup are built. A mesh that is placed more than once is shared where

@@ -72,11 +72,12 @@ private:
         return std::ranges::equal_range(moved_, chunk, {}, &PrimRange::mesh);
     }
 
-    /// Returns a box around a shared mesh, of which few corners have changed at most.
+    /// Returns a box around a mesh that is shared by itself, of which few corners have changed at
+    /// most.
     std::optional<Box> known_box(uint32_t chunk) const {
         const SharedMesh* mesh =
             chunk < scene_.mesh_of_chunk.size() ? scene_.shared_mesh_of(chunk) : nullptr;
-        if (!mesh)
+        if (!mesh || mesh->soup->chunks.size() > 1)
             return std::nullopt;
         Box box = mesh->box;
         uint64_t moved = 0;
@@ -112,19 +113,19 @@ private:
 
     void choose_resting(const Placed& placed) {
         Box bounds;
-        for (size_t i = 0; i < placed.shared.size(); ++i)
-            for (const uint32_t chunk : placed.shared[i])
-                bounds.add(placed_box(placed.boxes[i], soup_.chunks[chunk].transform()));
+        for (const Placed::Shared& meshes : placed.shared)
+            for (const uint32_t place : meshes.places)
+                bounds.add(placed_box(meshes.box, soup_.chunks[place].transform()));
         resting_.set_bounds(bounds);
-        for (size_t i = 0; i < placed.shared.size(); ++i) {
-            const uint32_t was = mesh_of(placed.shared[i], scene_.mesh_of_chunk);
-            if (was == kNone || placed.shared[i].size() > 1)
+        for (const Placed::Shared& meshes : placed.shared) {
+            const uint32_t was = mesh_before(meshes, scene_.shared, scene_.mesh_of_chunk);
+            if (was == kNone || meshes.places.size() > 1)
                 continue;
-            const uint32_t chunk = placed.shared[i].front();
+            const uint32_t chunk = meshes.places.front();
             uint64_t moved = 0;
             for (const PrimRange& range : moved_of(chunk))
                 moved += range.end - range.first;
-            resting_.consider(scene_.shared[was], chunk, placed.boxes[i], moved, unique_);
+            resting_.consider(scene_.shared[was], chunk, meshes.box, moved, unique_);
         }
     }
 
@@ -177,58 +178,56 @@ private:
     /// Keeps the meshes that are placed still, and builds those that are new.
     bool update_shared(const Placed& placed) {
         std::vector<SharedMesh> before = std::exchange(scene_.shared, {});
-        const std::vector<uint32_t> mesh_before = std::exchange(scene_.mesh_of_chunk, {});
+        const std::vector<uint32_t> of_chunk = std::exchange(scene_.mesh_of_chunk, {});
         if (placed.shared.empty() && !before.empty())
             return false; // without portals, pages must lie in the frame of the scene
         if (!placed.shared.empty())
             scene_.mesh_of_chunk.assign(soup_.chunks.size(), kNone);
-        for (size_t i = 0; i < placed.shared.size(); ++i) {
-            const Placed::Instances& instances = placed.shared[i];
-            const uint32_t was = mesh_of(instances, mesh_before);
-            if (was == kNone) {
-                if (!build(instances, placed.boxes[i]))
-                    return false;
-            } else {
-                before[was].box = placed.boxes[i];
-                if (!keep(std::move(before[was]), instances))
-                    return false;
-            }
+        for (const Placed::Shared& meshes : placed.shared) {
+            const uint32_t was = mesh_before(meshes, before, of_chunk);
+            if (!(was == kNone ? build(meshes) : keep(std::move(before[was]), meshes)))
+                return false;
             enter(scene_.shared.back());
         }
         return true;
     }
 
-    /// Returns the mesh that these chunks were instances of before; kNone: of none that is built.
-    static uint32_t mesh_of(const Placed::Instances& instances,
-                            const std::vector<uint32_t>& mesh_before) {
-        for (const uint32_t chunk : instances)
-            if (chunk < mesh_before.size() && mesh_before[chunk] != kNone)
-                return mesh_before[chunk];
+    /// Returns what these meshes were among the shared ones before; kNone: none of them, or they
+    /// were shared with others. of_chunk: as BuiltScene::mesh_of_chunk.
+    static uint32_t mesh_before(const Placed::Shared& meshes, std::span<const SharedMesh> before,
+                                std::span<const uint32_t> of_chunk) {
+        for (const uint32_t place : meshes.places)
+            if (const uint32_t was = place < of_chunk.size() ? of_chunk[place] : kNone;
+                was != kNone && before[was].soup &&
+                before[was].soup->chunks.size() == meshes.chunks &&
+                before[was].place_of(place) == place)
+                return was;
         return kNone;
     }
 
-    bool keep(SharedMesh mesh, const Placed::Instances& instances) {
-        mesh.instances = instances;
+    bool keep(SharedMesh mesh, const Placed::Shared& meshes) {
+        mesh.places = meshes.places;
+        mesh.box = meshes.box;
         std::vector<PrimRange> changed;
-        for (const uint32_t chunk : instances) {
+        meshes.for_each_chunk([&](uint32_t chunk) {
             for (const PrimRange& range : moved_of(chunk))
-                changed.push_back({0, range.first, range.end});
+                changed.push_back({chunk - mesh.place_of(chunk), range.first, range.end});
             scene_.mesh_of_chunk[chunk] = uint32_t(scene_.shared.size());
-        }
+        });
         changed = joined(std::move(changed));
         const std::optional<bool> rests = resting_.prepare(mesh);
         const bool updated =
             rests && update_level(mesh.scene, changed, {.is_new = *rests}, mesh.first_page);
         for (const PrimRange& range : changed)
             if (!mesh.has_lines)
-                look_for_lines(mesh, range.first, range.end);
+                look_for_lines(mesh, range);
         const bool has_lines = mesh.has_lines;
         scene_.shared.push_back(std::move(mesh));
         return updated && !has_lines;
     }
 
-    bool build(const Placed::Instances& instances, const Box& box) {
-        SharedMesh& shared = scene_.share(instances, box);
+    bool build(const Placed::Shared& meshes) {
+        SharedMesh& shared = scene_.share(meshes);
         BuiltScene& mesh = shared.scene;
         const Hittable hittable = take_hittable(mesh, progress_);
         look_for_lines(shared);
@@ -241,19 +240,19 @@ private:
     }
 
     void take_drops_off(const SharedMesh& mesh) {
-        scene_.dropped.not_finite -= mesh.instances.size() * mesh.scene.dropped.not_finite;
-        scene_.dropped.degenerate -= mesh.instances.size() * mesh.scene.dropped.degenerate;
+        scene_.dropped.not_finite -= mesh.places.size() * mesh.scene.dropped.not_finite;
+        scene_.dropped.degenerate -= mesh.places.size() * mesh.scene.dropped.degenerate;
     }
 
     /// Counts what the instances of the mesh drop, and widens the scene's bounds to them.
     void enter(const SharedMesh& mesh) {
-        scene_.dropped.not_finite += mesh.instances.size() * mesh.scene.dropped.not_finite;
-        scene_.dropped.degenerate += mesh.instances.size() * mesh.scene.dropped.degenerate;
+        scene_.dropped.not_finite += mesh.places.size() * mesh.scene.dropped.not_finite;
+        scene_.dropped.degenerate += mesh.places.size() * mesh.scene.dropped.degenerate;
         Level1& level1 = scene_.level1;
         if (mesh.scene.level1.leaves.empty()) // rays have nothing to look for
             return;
-        for (const uint32_t chunk : mesh.instances)
-            level1.bounds.add(placed_box(mesh.box, soup_.chunks[chunk].transform()));
+        for (const uint32_t place : mesh.places)
+            level1.bounds.add(placed_box(mesh.box, soup_.chunks[place].transform()));
         level1.padding = padding_of(level1.bounds);
     }
 

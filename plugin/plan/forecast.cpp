@@ -200,7 +200,7 @@ Result<ovc_plan> forecast(const Soup& soup, const TwoLevelOptions& options,
     plan.triangles = soup.triangle_count();
     plan.hittable = scene.triangles + scene.duplicate_count();
     for (const SharedMesh& mesh : scene.shared)
-        plan.hittable += mesh.scene.triangles * mesh.instances.size();
+        plan.hittable += mesh.scene.triangles * mesh.places.size();
     plan.gpu_budget_bytes = memory->budget_bytes;
     plan.smallest_budget_bytes = smallest_budget(cut.pool_bytes, device);
     plan.ray_bytes = memory->ray_bytes();
@@ -216,7 +216,7 @@ Result<ovc_plan> forecast(const Soup& soup, const TwoLevelOptions& options,
         if (!more)
             return more.error();
         sizes.add(*more);
-        portals += more->parts * scene.shared[i].instances.size();
+        portals += more->parts * scene.shared[i].places.size();
     }
     if (sizes.pages.empty())
         return plan;

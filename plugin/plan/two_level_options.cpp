@@ -56,8 +56,8 @@ SmallestCut smallest_cut(const Soup& soup, const Placed& placed, const TwoLevelO
     // Each shared mesh may have a leaf that is not full, and is one part with a portal an instance.
     const uint64_t leaves = (triangles + most - 1) / most + placed.shared.size();
     uint64_t portals = 0;
-    for (const Placed::Instances& chunks : placed.shared)
-        portals += chunks.size();
+    for (const Placed::Shared& meshes : placed.shared)
+        portals += meshes.places.size();
     const uint64_t table =
         first_bytes + leaves * leaf_bytes + portals * (kPortalBytes + 2 * OVC_UNIT_BYTES);
     return {uint32_t(most), table + kPageStart + most * kMaxUncutBytesPerTriangle};

@@ -91,7 +91,7 @@ ovc_statistics TwoLevel::report() const {
     told.host_bytes = scene_.host_bytes();
     told.unique_triangles = scene_.unique_triangles();
     for (const SharedMesh& mesh : scene_.shared)
-        told.instances += mesh.instances.size();
+        told.instances += mesh.instances();
     told.top_level_bytes = scene_.top.tree.bytes() + scene_.top.table_bytes();
     told.from_saved = scene_.from_saved;
     told.gpu_bytes = passes_.gpu_bytes();

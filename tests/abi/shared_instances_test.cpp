@@ -4,9 +4,12 @@
 #include "core/system/stopwatch.h"
 #include "tests/abi/instances_world.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <span>
+#include <utility>
 
 namespace ovc {
 namespace {
@@ -76,14 +79,22 @@ TEST_F(Instances, SharePagesAndAnswerAlike) {
         config.gpu_memory_bytes = random.below(3) ? 0 : 300 << 10;
         World w = world();
         std::vector<uint32_t> numbers;
-        for (uint32_t mesh = 0; mesh < 1 + random.below(3); ++mesh)
-            numbers.push_back(w.add(mesh_of_any_kind(random), random.point(-1, 1), nullptr,
+        const uint32_t meshes = 1 + uint32_t(random.below(3));
+        const bool together = meshes > 1 && random.below(2);
+        const dvec3 origin = random.point(-1, 1);
+        for (uint32_t mesh = 0; mesh < meshes; ++mesh)
+            numbers.push_back(w.add(mesh_of_any_kind(random),
+                                    together ? origin : random.point(-1, 1), nullptr,
                                     random.below(2) ? OVC_MESH_TEMPLATE : 0));
-        const uint32_t instances = 3 + random.below(12);
+        const uint32_t places = 3 + uint32_t(random.below(12));
         Matrix before = shift(dvec3(0));
-        for (uint32_t i = 0; i < instances; ++i) {
+        for (uint32_t i = 0; i < places; ++i) {
             const Matrix m = random.below(5) ? transform_of_any_kind(random) : before;
-            numbers.push_back(w.instance(numbers[random.below(uint32_t(numbers.size()))], &m));
+            if (!together || random.below(8) == 0)
+                numbers.push_back(w.instance(numbers[random.below(uint32_t(numbers.size()))], &m));
+            else
+                for (uint32_t mesh = 0; mesh < meshes; ++mesh)
+                    w.instance(numbers[mesh], &m);
             before = m;
         }
         w.commit();
@@ -100,6 +111,42 @@ TEST_F(Instances, SharePagesAndAnswerAlike) {
     std::printf("%llu rays, %llu scenes with shared pages: none off by a bit\n",
                 static_cast<unsigned long long>(rays_asked),
                 static_cast<unsigned long long>(shared));
+}
+
+/// An object of several meshes costs rays no more portals than one of a single mesh. Two of its
+/// meshes have triangles in common.
+TEST_F(Instances, ThatLieTogetherAreBehindOnePortal) {
+    Random random(17);
+    const auto leaves = random_corners<vec3>(random, 300, 0.3);
+    std::vector<vec3> stems = random_corners<vec3>(random, 200, 0.3);
+    std::ranges::copy(std::span(leaves).first(60), stems.begin());
+    config.leaf_triangles = 1000;
+    World object = world(), apart = world();
+    std::vector<uint32_t> of_object, of_apart;
+    for (const std::vector<vec3>* corners : {&leaves, &std::as_const(stems)}) {
+        of_object.push_back(object.add(*corners, dvec3(1), nullptr, OVC_MESH_TEMPLATE));
+        of_apart.push_back(apart.add(*corners, dvec3(1), nullptr, OVC_MESH_TEMPLATE));
+    }
+    std::vector<Matrix> places;
+    for (int i = 0; i < 9; ++i)
+        places.push_back(any_transform(random, 3));
+    for (const Matrix& m : places)
+        for (const uint32_t mesh : of_object)
+            object.instance(mesh, &m);
+    for (const uint32_t mesh : of_apart)
+        for (const Matrix& m : places)
+            apart.instance(mesh, &m);
+    object.commit();
+    apart.commit();
+    const ovc_statistics one = object.statistics(), two = apart.statistics();
+    EXPECT_EQ(one.instances, 18u);
+    EXPECT_EQ(two.instances, 18u);
+    EXPECT_EQ(one.unique_triangles, two.unique_triangles);
+    EXPECT_EQ(one.twins, 9 * 20u);
+    EXPECT_LT(one.top_level_bytes, two.top_level_bytes * 2 / 3);
+    const std::vector<Ray> rays = rays_at(object.expected, 500, 18);
+    expect_brute_force(object, rays, 30);
+    expect_brute_force_with_skips(object, std::vector<Ray>(rays.begin(), rays.begin() + 100), 19);
 }
 
 /// A hundred instances in one place count as one for rays and for memory.

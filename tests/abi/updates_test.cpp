@@ -24,6 +24,8 @@ public:
             add_mesh();
         for (uint64_t left = random_.below(4); left > 0; --left)
             add_instance();
+        if (random_.below(3) == 0)
+            place_together();
     }
 
     /// Makes some changes, without a commit.
@@ -33,7 +35,7 @@ public:
             if (kind == 0)
                 add_mesh();
             else if (kind == 1)
-                add_instance();
+                random_.below(4) ? add_instance() : place_together();
             else if (kind == 2)
                 remove();
             else if (kind < 7)
@@ -114,6 +116,17 @@ private:
         const Matrix m = transform();
         world_.instance(any_left(), random_.below(4) ? &m : nullptr);
     }
+    /// Places some meshes together, as an object of several shapes.
+    void place_together() {
+        std::vector<uint32_t> shapes;
+        for (uint64_t left = 2 + random_.below(2); left > 0; --left)
+            shapes.push_back(any_left());
+        for (uint64_t left = 2 + random_.below(2); left > 0; --left) {
+            const Matrix m = transform();
+            for (const uint32_t shape : shapes)
+                world_.instance(shape, &m);
+        }
+    }
     void move() {
         const Matrix m = transform();
         world_.move(any_left(), random_.below(6) ? &m : nullptr);
@@ -178,7 +191,7 @@ TEST_F(Updates, AnswerAsAScenesThatIsNew) {
     const double seconds = asked ? std::strtod(asked, nullptr) : 8;
     const Stopwatch watch;
     uint64_t rays_asked = 0, updates = 0, refitted = 0, rebuilt = 0, commits = 0;
-    for (uint64_t seed = 0; seed < 6 || watch.seconds() < seconds; ++seed) {
+    for (uint64_t seed = 0; seed < 12 || watch.seconds() < seconds; ++seed) {
         Random random(seed);
         config.leaf_triangles = random.below(3) ? 0 : 40;
         config.kernel = random.below(2) ? OVC_KERNEL_FRAGMENT : OVC_KERNEL_AUTO;
