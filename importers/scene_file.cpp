@@ -3,10 +3,10 @@
 // texture coordinates and the levels.
 #include "importers/scene_file.h"
 
+#include "core/file/value_bytes.h"
 #include "core/function_ref.h"
 #include "importers/file/output_file.h"
 #include "importers/readers.h"
-#include "importers/scene_bytes.h"
 #include "importers/scene_fields.h"
 #include "importers/sound_meshes.h"
 

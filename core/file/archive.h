@@ -71,6 +71,9 @@ public:
     /// Ends the archive; call this once. Returns false where the sink wanted no more.
     bool finish();
 
+    /// Returns how many bytes were passed to the sink.
+    uint64_t bytes() const { return offset_; }
+
 private:
     void pass_on(Bytes bytes);
     void end_part();
