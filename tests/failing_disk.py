@@ -27,7 +27,7 @@ class Disk:
                               capture_output=True, timeout=SECONDS)
 
     def check(self, command, target, fault):
-        """Runs a command that writes the target. Fails the test unless the fault is healed or said."""
+        """Runs a command that writes the target. Fails unless the fault is healed or said."""
         old = b"the old file"
         target.write_bytes(old)
         before = {file.name for file in self.folder.iterdir()}
