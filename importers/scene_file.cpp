@@ -3,10 +3,9 @@
 // texture coordinates and the levels.
 #include "importers/scene_file.h"
 
+#include "core/file/value_bytes.h"
 #include "core/function_ref.h"
-#include "importers/file/output_file.h"
 #include "importers/readers.h"
-#include "importers/scene_bytes.h"
 #include "importers/scene_fields.h"
 #include "importers/sound_meshes.h"
 
@@ -216,17 +215,14 @@ struct LargeParts {
     std::function<Result<Done>(const ByteSink&)> write_corners, write_normals;
 };
 
-Result<Done> write_file(const Scene& scene, const LargeParts& parts, const Provenance& from,
-                        const SaveLevels& save_levels, const std::filesystem::path& path) {
-    Result<OutputFile> out = OutputFile::create(path);
-    if (!out)
-        return out.error();
+/// Writes everything but the levels.
+Result<Done> write_front(const Scene& scene, const LargeParts& parts, const Provenance& from,
+                         const OutputFile& out, ArchiveWriter& writer) {
     ByteWriter fields;
     fields(scene, scene.meshes, from.request, from.files, from.warnings);
-    ArchiveWriter writer(out->sink(), kKind, kVersion);
     const ByteSink sink = [&](Bytes bytes) {
         writer.write(bytes);
-        return !out->has_failed(); // building the levels for a full disk would be in vain
+        return !out.has_failed();
     };
     writer.part<std::byte>("fields", fields.bytes());
     writer.part<MeshExtent>("extents", parts.extents);
@@ -239,13 +235,47 @@ Result<Done> write_file(const Scene& scene, const LargeParts& parts, const Prove
     writer.begin("uv");
     for (const MeshInfo& mesh : scene.meshes)
         writer.write(bytes_of(std::span<const vec2>(mesh.uv)));
+    return Done{};
+}
+
+/// Ends the file.
+Result<Done> write_levels(const SaveLevels& save_levels, OutputFile& out, ArchiveWriter& writer) {
+    const ByteSink sink = [&](Bytes bytes) {
+        writer.write(bytes);
+        return !out.has_failed(); // building the levels for a full disk would be in vain
+    };
     if (save_levels) {
         writer.begin("levels");
-        if (const Result<Done> saved = save_levels(sink); !saved && !out->has_failed())
+        if (const Result<Done> saved = save_levels(sink); !saved && !out.has_failed())
             return saved;
     }
     writer.finish();
-    return out->commit();
+    return out.commit();
+}
+
+Result<Done> write_file(const Scene& scene, const LargeParts& parts, const Provenance& from,
+                        const SaveLevels& save_levels, const std::filesystem::path& path) {
+    Result<OutputFile> out = OutputFile::create(path);
+    if (!out)
+        return out.error();
+    ArchiveWriter writer(out->sink(), kKind, kVersion);
+    if (const Result<Done> done = write_front(scene, parts, from, *out, writer); !done)
+        return done;
+    return write_levels(save_levels, *out, writer);
+}
+
+LargeParts parts_of(const Scene& scene, const TriangleStore& store) {
+    assert(store.meshes() == scene.meshes.size());
+    LargeParts parts;
+    for (size_t m = 0; m < scene.meshes.size(); ++m) {
+        MeshExtent extent{scene.soup.chunks[m].origin(), store.corners(m), store.normals(m),
+                          scene.meshes[m].uv.size()};
+        extent.mask = scene.soup.chunks[m].mask();
+        parts.extents.push_back(extent);
+    }
+    parts.write_corners = [&](const ByteSink& sink) { return store.write_corners(sink); };
+    parts.write_normals = [&](const ByteSink& sink) { return store.write_normals(sink); };
+    return parts;
 }
 
 } // namespace
@@ -270,17 +300,29 @@ Result<Done> write_scene_file(const Scene& scene, const Provenance& from,
 Result<Done> write_scene_file(const Scene& scene, const TriangleStore& store,
                               const Provenance& from, const SaveLevels& save_levels,
                               const std::filesystem::path& path) {
-    assert(store.meshes() == scene.meshes.size());
-    LargeParts parts;
-    for (size_t m = 0; m < scene.meshes.size(); ++m) {
-        MeshExtent extent{scene.soup.chunks[m].origin(), store.corners(m), store.normals(m),
-                          scene.meshes[m].uv.size()};
-        extent.mask = scene.soup.chunks[m].mask();
-        parts.extents.push_back(extent);
-    }
-    parts.write_corners = [&](const ByteSink& sink) { return store.write_corners(sink); };
-    parts.write_normals = [&](const ByteSink& sink) { return store.write_normals(sink); };
-    return write_file(scene, parts, from, save_levels, path);
+    return write_file(scene, parts_of(scene, store), from, save_levels, path);
+}
+
+Result<std::vector<ArchivePart>> write_front(const Scene& scene, const TriangleStore& store,
+                                             const Provenance& from, OutputFile& out) {
+    ArchiveWriter writer(out.sink(), kKind, kVersion);
+    if (const Result<Done> done = write_front(scene, parts_of(scene, store), from, out, writer);
+        !done)
+        return done.error();
+    std::vector<ArchivePart> parts = writer.end_part();
+    if (const Result<Done> flushed = out.flush(); !flushed)
+        return flushed.error();
+    return parts;
+}
+
+uint64_t end_of(const SceneFront& front) {
+    return ArchiveWriter({}, kKind, kVersion, front.parts).bytes();
+}
+
+Result<Done> finish_scene_file(const SceneFront& front, const SaveLevels& save_levels,
+                               OutputFile& out) {
+    ArchiveWriter writer(out.sink(), kKind, kVersion, front.parts);
+    return write_levels(save_levels, out, writer);
 }
 
 uint64_t checksum_of(const Scene& scene) {
@@ -336,6 +378,48 @@ Result<SceneFile> open_scene_file(const std::filesystem::path& path) {
         return failed({"holds no levels: overcast convert makes one that does"});
     Result<SceneFile> file = read(std::move(disk), *archive);
     return file ? std::move(file) : failed(file.error());
+}
+
+namespace {
+
+Result<SceneFront> read_front(const StoredArchive& archive) {
+    for (const char* name : {"corners", "normals", "uv"})
+        if (const Result<Done> fine = archive.check_part(name); !fine)
+            return fine.error();
+    const auto fields = archive.items<std::byte>("fields");
+    if (!fields)
+        return fields.error();
+    const auto extents = archive.items<MeshExtent>("extents");
+    if (!extents)
+        return extents.error();
+    SceneFront front;
+    Scene scene;
+    ByteReader reader(*fields);
+    reader(scene, scene.meshes, front.from.request, front.from.files, front.from.warnings);
+    if (!reader.done())
+        return Error{"is damaged: what it holds is no scene"};
+    uint64_t offset = archive.place("corners").offset;
+    for (const MeshExtent& extent : *extents) {
+        front.meshes.push_back({extent.origin, extent.corners / 3, offset});
+        offset += extent.corners * sizeof(vec3);
+    }
+    return front;
+}
+
+} // namespace
+
+Result<SceneFront> open_front(const std::filesystem::path& path, std::vector<ArchivePart> parts) {
+    const Result<DiskFile> file = DiskFile::open(path);
+    if (!file)
+        return file.error();
+    const auto read_bytes = [&](uint64_t offset, std::span<std::byte> to) {
+        return file->read(offset, to);
+    };
+    Result<SceneFront> front = read_front(StoredArchive::of_parts(read_bytes, parts));
+    if (!front)
+        return Error{fmt::format("{}: the file {}", path.string(), front.error().message)};
+    front->parts = std::move(parts);
+    return front;
 }
 
 /// Repeats the warnings of the time when the scene was made.

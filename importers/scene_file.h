@@ -5,6 +5,7 @@
 
 #include "core/file/archive.h"
 #include "importers/file/files_read.h"
+#include "importers/file/output_file.h"
 #include "importers/file/triangle_store.h"
 #include "importers/importer.h"
 
@@ -42,6 +43,34 @@ Result<Done> write_scene_file(const Scene& scene, const Provenance& from,
 Result<Done> write_scene_file(const Scene& scene, const TriangleStore& store,
                               const Provenance& from, const SaveLevels& save_levels,
                               const std::filesystem::path& path);
+
+/// The front of a scene file is everything but the levels. It lies in an unfinished file until they
+/// are written behind it, perhaps by a later run of the program.
+struct SceneFront {
+    struct Mesh {
+        dvec3 origin{0};
+        uint64_t triangles = 0;
+        uint64_t offset = 0; // of its corners in the file
+    };
+    std::vector<ArchivePart> parts; // which identify it
+    std::vector<Mesh> meshes;
+    Provenance from;
+};
+
+/// Writes the front of the file that write_scene_file() would write, and returns its parts.
+Result<std::vector<ArchivePart>> write_front(const Scene& scene, const TriangleStore& store,
+                                             const Provenance& from, OutputFile& out);
+
+/// Reads a front, and checks all of it. Error: it is damaged, or cannot be read. The sentence
+/// begins with the path.
+Result<SceneFront> open_front(const std::filesystem::path& path, std::vector<ArchivePart> parts);
+
+/// Returns where a front ends, and the levels begin.
+uint64_t end_of(const SceneFront& front);
+
+/// Writes the levels to `out`, which goes on behind the front, and commits it.
+Result<Done> finish_scene_file(const SceneFront& front, const SaveLevels& save_levels,
+                               OutputFile& out);
 
 /// Returns a checksum of everything that a picture of the scene depends on, and of its names.
 uint64_t checksum_of(const Scene& scene);

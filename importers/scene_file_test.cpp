@@ -3,8 +3,8 @@
 // have changed since.
 #include "importers/scene_file.h"
 
+#include "core/file/value_bytes.h"
 #include "importers/readers.h"
-#include "importers/scene_bytes.h"
 #include "importers/scene_fields.h"
 #include "importers/test_files.h"
 #include "tests/fuzz/importers.h"

@@ -480,6 +480,12 @@ typedef struct ovc_streamed_mesh {
     uint32_t reserved;       /* 0 */
 } ovc_streamed_mesh;
 
+/* Experimental: a step that save_streamed has kept. */
+typedef struct ovc_kept_step {
+    const void* bytes;
+    size_t size;
+} ovc_kept_step;
+
 /* Experimental: a scene that need not fit into host memory, for save_streamed. The functions get `user` and return 0 to go on,
  * anything else to stop the call. The library calls those that read and write scratch from several threads at once, each on bytes
  * of its own, and `write` from one at a time. They must not throw and may call last_error and nothing else. */
@@ -498,6 +504,15 @@ typedef struct ovc_streamed_scene {
     int (*write_scratch)(void* user, uint64_t offset, const void* bytes, size_t size);
     int (*read_scratch)(void* user, uint64_t offset, void* bytes, size_t size);
     ovc_write_function write; /* takes what is saved, front to back */
+    /* To go on where an earlier call ended; all of them may be NULL or 0. keep_step takes bytes to keep behind those that it took
+     * before, from one thread at a time; by then `write` and write_scratch have taken all that they stand for. A later call gets
+     * them as `kept`, in order, and the scratch as it was. It passes the same bytes to `write`, again from the first on, and where
+     * those were written before it gets them by read_written, instead of making them. OVC_ERROR_UNREADABLE: `kept` is damaged, or of
+     * other meshes, another config, another number of threads or another version; nothing is kept of what is built in memory. */
+    int (*keep_step)(void* user, const void* bytes, size_t size);
+    const ovc_kept_step* kept; /* kept_count of them */
+    size_t kept_count;
+    int (*read_written)(void* user, uint64_t offset, void* bytes, size_t size); /* by the offset among all that `write` took */
 } ovc_streamed_scene;
 
 /* The table. Fields are only ever appended; struct_size tells how many there are. All of them are stable within an abi. */

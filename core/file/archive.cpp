@@ -54,14 +54,31 @@ T read_at(Bytes bytes, uint64_t offset) {
 
 } // namespace
 
-ArchiveWriter::ArchiveWriter(ByteSink sink, std::string_view kind, uint32_t version)
-    : sink_(std::move(sink)) {
+static Header header_of(std::string_view kind, uint32_t version) {
     Header header;
     header.kind = name_of(kind);
     header.version = version;
     header.byte_order = kByteOrder;
+    return header;
+}
+
+ArchiveWriter::ArchiveWriter(ByteSink sink, std::string_view kind, uint32_t version)
+    : sink_(std::move(sink)) {
+    const Header header = header_of(kind, version);
     frame_.add(bytes_of_one(header));
     pass_on(bytes_of_one(header));
+}
+
+static uint64_t aligned(uint64_t offset) {
+    return (offset + kPartAlignment - 1) / kPartAlignment * kPartAlignment;
+}
+
+ArchiveWriter::ArchiveWriter(ByteSink sink, std::string_view kind, uint32_t version,
+                             std::vector<ArchivePart> parts)
+    : sink_(std::move(sink)), parts_(std::move(parts)) {
+    assert(!parts_.empty());
+    frame_.add(bytes_of_one(header_of(kind, version)));
+    offset_ = aligned(parts_.back().offset + parts_.back().bytes);
 }
 
 void ArchiveWriter::pass_on(Bytes bytes) {
@@ -69,24 +86,26 @@ void ArchiveWriter::pass_on(Bytes bytes) {
     offset_ += bytes.size();
 }
 
-void ArchiveWriter::end_part() {
-    if (!parts_.empty()) {
+const std::vector<ArchivePart>& ArchiveWriter::end_part() {
+    if (in_part_) {
         parts_.back().bytes = offset_ - parts_.back().offset;
         parts_.back().checksum = part_.value();
+        in_part_ = false;
     }
     const std::array<std::byte, kPartAlignment> zeros{};
-    pass_on(std::span(zeros).first((kPartAlignment - offset_ % kPartAlignment) % kPartAlignment));
-    assert(offset_ % kPartAlignment == 0);
+    pass_on(std::span(zeros).first(size_t(aligned(offset_) - offset_)));
+    return parts_;
 }
 
 void ArchiveWriter::begin(std::string_view name) {
     end_part();
     part_ = Checksum();
+    in_part_ = true;
     parts_.push_back({name_of(name), offset_});
 }
 
 void ArchiveWriter::write(Bytes bytes) {
-    assert(!parts_.empty());
+    assert(in_part_);
     part_.add(bytes);
     pass_on(bytes);
 }
@@ -238,6 +257,21 @@ Result<Done> StoredArchive::read_checked(const ArchivePart& part, std::span<std:
     if (checksum_of(to) != part.checksum)
         return wrong_checksum(name);
     return Done{};
+}
+
+Result<Done> StoredArchive::check_part(std::string_view name) const {
+    const ArchivePart* found = find_part(parts_, name);
+    if (!found)
+        return no_part(name);
+    Checksum sum;
+    std::vector<std::byte> bytes;
+    for (uint64_t at = 0; at < found->bytes; at += bytes.size()) {
+        bytes.resize(size_t(std::min<uint64_t>(1 << 20, found->bytes - at)));
+        if (!read_(found->offset + at, bytes))
+            return Error{"cannot be read: its part '" + std::string(name) + "'"};
+        sum.add(bytes);
+    }
+    return sum.value() == found->checksum ? Result<Done>(Done{}) : wrong_checksum(name);
 }
 
 } // namespace ovc

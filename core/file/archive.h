@@ -58,6 +58,9 @@ class ArchiveWriter {
 public:
     /// kind, and the names of parts, have at most 15 characters.
     ArchiveWriter(ByteSink sink, std::string_view kind, uint32_t version);
+    /// Goes on behind parts that another writer has ended. The sink continues its bytes.
+    ArchiveWriter(ByteSink sink, std::string_view kind, uint32_t version,
+                  std::vector<ArchivePart> parts);
 
     /// Begins a part of this name, to which all that is written next belongs.
     void begin(std::string_view name);
@@ -68,17 +71,22 @@ public:
         write(bytes_of(items));
     }
 
+    /// Ends the part that was begun last, and returns all parts.
+    const std::vector<ArchivePart>& end_part();
     /// Ends the archive; call this once. Returns false where the sink wanted no more.
     bool finish();
 
+    /// Returns how many bytes were passed to the sink.
+    uint64_t bytes() const { return offset_; }
+
 private:
     void pass_on(Bytes bytes);
-    void end_part();
 
     ByteSink sink_;
     Checksum frame_; // over header and table
     std::vector<ArchivePart> parts_;
     Checksum part_;
+    bool in_part_ = false;
     uint64_t offset_ = 0;
     bool wanted_ = true;
 };
@@ -124,10 +132,16 @@ public:
     /// As Archive::open(), of so many bytes that `read` gives. Error: besides, they cannot be read.
     static Result<StoredArchive> open(ReadBytes read, uint64_t bytes, std::string_view kind,
                                       uint32_t version);
+    /// Returns a view of parts of an archive that need not be whole.
+    static StoredArchive of_parts(ReadBytes read, std::vector<ArchivePart> parts) {
+        return {std::move(read), std::move(parts)};
+    }
 
     /// Returns where a part lies; bytes are 0 where there is none of this name.
     ArchivePart place(std::string_view name) const;
     const ReadBytes& read() const { return read_; }
+    /// Reads a part to check it, and keeps nothing of it. Error: it is damaged, or cannot be read.
+    Result<Done> check_part(std::string_view name) const;
 
     /// Returns a part of any number of T, or of `count`. Error: as Archive::items(), or the bytes
     /// cannot be read.

@@ -26,6 +26,19 @@ int read_file(int descriptor, uint64_t offset, std::span<std::byte> to) {
     return 0;
 }
 
+int write_file(int descriptor, uint64_t offset, Bytes bytes) {
+    while (!bytes.empty()) {
+        const ssize_t done = pwrite(descriptor, bytes.data(), bytes.size(), off_t(offset));
+        if (done < 0 && errno == EINTR)
+            continue;
+        if (done <= 0)
+            return done < 0 ? errno : ENOSPC;
+        bytes = bytes.subspan(size_t(done));
+        offset += uint64_t(done);
+    }
+    return 0;
+}
+
 Result<DiskFile> DiskFile::open(const std::filesystem::path& path) {
     const auto failed = [&](const std::string& sentence) {
         return Error{path.string() + ": " + sentence};

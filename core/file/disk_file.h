@@ -18,6 +18,9 @@ namespace ovc {
 inline constexpr int kFileEnded = -1;
 int read_file(int descriptor, uint64_t offset, std::span<std::byte> to);
 
+/// Writes bytes to a file from an offset on. Returns 0, or the error number of the system.
+int write_file(int descriptor, uint64_t offset, Bytes bytes);
+
 /// A file that is cut shorter, or that its disk cannot give, is noted. Any number of threads may
 /// read.
 class DiskFile {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The plugin reads corners from the store, and has a scratch file of its own.
+// The functions that the plugin reads, writes and keeps steps with.
 #include "host/backend/streamed_levels.h"
 
 #include "host/backend/plugin_config.h"
@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 
 #include <atomic>
-#include <cassert>
 #include <vector>
 
 namespace ovc {
@@ -17,9 +16,10 @@ namespace {
 
 /// What the plugin's functions work on.
 struct Streams {
-    const TriangleStore& store;
-    ScratchFile scratch;
+    const StreamedTriangles& triangles;
+    ScratchFile& scratch;
     const ByteSink& sink;
+    const KeptLevels* kept;
     TerminalLine line;
     std::atomic<uint64_t> read_bytes{0};
     std::atomic<uint64_t> written_bytes{0};
@@ -36,7 +36,7 @@ struct Streams {
         Streams& self = *static_cast<Streams*>(user);
         const std::span corners(static_cast<vec3*>(to), size_t(3 * count));
         self.read_bytes += corners.size_bytes();
-        return self.store.read_corners(mesh, 3 * first, corners) ? 0 : 1;
+        return self.triangles.read(mesh, first, corners) ? 0 : 1;
     }
     static int write_scratch(void* user, uint64_t offset, const void* bytes, size_t size) {
         Streams& self = *static_cast<Streams*>(user);
@@ -53,15 +53,39 @@ struct Streams {
         self.written_bytes += size;
         return self.sink({static_cast<const std::byte*>(bytes), size}) ? 0 : 1;
     }
+    static int keep_step(void* user, const void* bytes, size_t size) {
+        const KeptLevels& kept = *static_cast<Streams*>(user)->kept;
+        const Bytes step(static_cast<const std::byte*>(bytes), size);
+        return kept.flush() && kept.steps.keep(step) ? 0 : 1;
+    }
+    static int read_written(void* user, uint64_t offset, void* bytes, size_t size) {
+        Streams& self = *static_cast<Streams*>(user);
+        self.read_bytes += size;
+        return self.kept->read_written(offset, {static_cast<std::byte*>(bytes), size}) ? 0 : 1;
+    }
+
+    /// Returns why one of these has failed; the plugin only knows that it has.
+    std::optional<Error> error() const {
+        std::optional<Error> failed = scratch.error();
+        if (!failed)
+            failed = triangles.error();
+        return failed || !kept ? failed : kept->steps.error();
+    }
 };
 
-std::vector<ovc_streamed_mesh> meshes_of(const Scene& scene, const TriangleStore& store) {
+std::vector<ovc_streamed_mesh> meshes_of(const StreamedTriangles& triangles) {
     std::vector<ovc_streamed_mesh> meshes;
-    for (size_t m = 0; m < store.meshes(); ++m) {
-        const dvec3& origin = scene.soup.chunks[m].origin();
-        meshes.push_back({{origin.x, origin.y, origin.z}, store.corners(m) / 3, 0, 0});
-    }
+    for (const StreamedTriangles::Mesh& mesh : triangles.meshes)
+        meshes.push_back({{mesh.origin.x, mesh.origin.y, mesh.origin.z}, mesh.triangles, 0, 0});
     return meshes;
+}
+
+std::vector<ovc_kept_step> steps_of(const KeptLevels* kept) {
+    std::vector<ovc_kept_step> steps;
+    if (kept)
+        for (const std::vector<std::byte>& step : kept->steps.steps().subspan(kept->first))
+            steps.push_back({step.data(), step.size()});
+    return steps;
 }
 
 Result<PluginDevice> open_device(const BackendOptions& options, const LogSink& log) {
@@ -76,11 +100,10 @@ Result<PluginDevice> open_device(const BackendOptions& options, const LogSink& l
 
 } // namespace
 
-Result<Done> save_streamed_levels(const Scene& scene, const TriangleStore& store,
-                                  uint64_t host_bytes, const std::filesystem::path& folder,
-                                  const BackendOptions& options, const LogSink& log,
-                                  const ByteSink& sink) {
-    assert(scene.soup.chunks.size() == store.meshes());
+Result<Done> save_streamed_levels(const StreamedTriangles& triangles, uint64_t host_bytes,
+                                  ScratchFile& scratch, const BackendOptions& options,
+                                  const LogSink& log, const ByteSink& sink,
+                                  const KeptLevels* kept) {
     const Result<PluginDevice> device = open_device(options, log);
     if (!device)
         return device.error();
@@ -90,14 +113,12 @@ Result<Done> save_streamed_levels(const Scene& scene, const TriangleStore& store
     Result<ovc_scene_config> config = config_of(options, *info, log);
     if (!config)
         return config.error();
-    Result<ScratchFile> scratch = ScratchFile::create(folder);
-    if (!scratch)
-        return scratch.error();
-    Streams streams{store, std::move(*scratch), sink,
+    Streams streams{triangles, scratch, sink, kept,
                     TerminalLine(options.watching == BuildWatching::Shown)};
     config->progress = Streams::tell;
     config->progress_user = &streams;
-    const std::vector<ovc_streamed_mesh> meshes = meshes_of(scene, store);
+    const std::vector<ovc_streamed_mesh> meshes = meshes_of(triangles);
+    const std::vector<ovc_kept_step> steps = steps_of(kept);
     ovc_streamed_scene streamed{};
     streamed.struct_size = sizeof(streamed);
     streamed.host_memory_bytes = host_bytes;
@@ -108,12 +129,15 @@ Result<Done> save_streamed_levels(const Scene& scene, const TriangleStore& store
     streamed.write_scratch = Streams::write_scratch;
     streamed.read_scratch = Streams::read_scratch;
     streamed.write = Streams::write;
-    const Result<Done> saved = device->save_streamed(*config, streamed);
-    // The plugin only knows that a function of ours has failed.
-    for (const std::optional<Error>& failed : {streams.scratch.error(), store.error()})
-        if (!saved && failed)
-            return *failed;
-    return saved;
+    if (kept) {
+        streamed.keep_step = Streams::keep_step;
+        streamed.kept = steps.data();
+        streamed.kept_count = steps.size();
+        streamed.read_written = Streams::read_written;
+    }
+    Result<Done> saved = device->save_streamed(*config, streamed);
+    const std::optional<Error> failed = streams.error();
+    return saved || !failed ? std::move(saved) : *failed;
 }
 
 } // namespace ovc

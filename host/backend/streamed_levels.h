@@ -2,20 +2,47 @@
 // save_streamed_levels() lets the plugin build a scene whose triangles lie on a disk.
 #pragma once
 
-#include "core/scene.h"
+#include "core/result.h"
+#include "core/vec.h"
 #include "host/backend/backend.h"
-#include "importers/file/triangle_store.h"
+#include "importers/file/scratch_file.h"
+#include "importers/file/step_file.h"
 
-#include <filesystem>
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
 
 namespace ovc {
 
-/// Writes to the sink what Backend::save() would of two-level over the scene, whose meshes are
-/// empty and whose triangles lie in the store. host_bytes: that the plugin may take. folder: of its
-/// scratch file. Error: those of the plugin, a disk that fails, or another backend was asked for.
-Result<Done> save_streamed_levels(const Scene& scene, const TriangleStore& store,
-                                  uint64_t host_bytes, const std::filesystem::path& folder,
-                                  const BackendOptions& options, const LogSink& log,
-                                  const ByteSink& sink);
+/// Triangles that are read in parts.
+struct StreamedTriangles {
+    struct Mesh {
+        dvec3 origin{0};
+        uint64_t triangles = 0;
+    };
+    std::vector<Mesh> meshes;
+    /// Fills `corners` with a mesh's from its triangle `first` on. Returns false where the disk
+    /// fails. Any number of threads may call it.
+    std::function<bool(uint32_t mesh, uint64_t first, std::span<vec3> corners)> read;
+    std::function<std::optional<Error>()> error; // the first failure
+};
+
+/// What the build keeps, so that a later one goes on.
+struct KeptLevels {
+    StepFile& steps;
+    size_t first; // of the steps that are the plugin's
+    /// Reads what an earlier build passed to the sink.
+    std::function<bool(uint64_t offset, std::span<std::byte> to)> read_written;
+    std::function<bool()> flush; // all that the sink got
+};
+
+/// Writes to the sink what Backend::save() would of two-level over the triangles. host_bytes: that
+/// the plugin may take. kept: null keeps nothing; else the scratch file is the earlier build's.
+/// Error: those of the plugin, a disk that fails, or another backend was asked for.
+Result<Done> save_streamed_levels(const StreamedTriangles& triangles, uint64_t host_bytes,
+                                  ScratchFile& scratch, const BackendOptions& options,
+                                  const LogSink& log, const ByteSink& sink,
+                                  const KeptLevels* kept = nullptr);
 
 } // namespace ovc

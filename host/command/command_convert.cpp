@@ -6,6 +6,7 @@
 #include "host/backend/streamed_levels.h"
 #include "host/command/command.h"
 #include "host/output/output.h"
+#include "host/scene/kept_conversion.h"
 #include "host/scene/scene_cache.h"
 #include "host/scene/scene_source.h"
 #include "host/terminal/interrupt.h"
@@ -128,11 +129,37 @@ static Result<Done> check_streams(const std::string& source) {
                              source)};
 }
 
-/// As convert_to_scene_file(), within so much host memory.
-static Result<Done> convert_streamed(const SceneArguments& source, BackendOptions options,
-                                     const LogSink& log, const std::string& output) {
-    if (const Result<Done> fine = check_streams(source.scenes.front()); !fine)
-        return fine;
+static StreamedTriangles triangles_in(const Scene& scene, const TriangleStore& store) {
+    StreamedTriangles triangles;
+    for (size_t m = 0; m < store.meshes(); ++m)
+        triangles.meshes.push_back({scene.soup.chunks[m].origin(), store.corners(m) / 3});
+    triangles.read = [&](uint32_t mesh, uint64_t first, std::span<vec3> corners) {
+        return store.read_corners(mesh, 3 * first, corners);
+    };
+    triangles.error = [&] { return store.error(); };
+    return triangles;
+}
+
+/// Builds the triangles in the store, and writes all of the scene as .ovc.
+static Result<Done> save_stored(const Scene& scene, const TriangleStore& store,
+                                const Provenance& from, BackendOptions options, const LogSink& log,
+                                const std::filesystem::path& output) {
+    Result<ScratchFile> scratch = ScratchFile::create(output.parent_path());
+    if (!scratch)
+        return scratch.error();
+    options.watching = BuildWatching::Shown;
+    const SaveLevels save_levels = [&](const ByteSink& sink) {
+        return save_streamed_levels(triangles_in(scene, store), options.host_bytes, *scratch,
+                                    options, log, sink);
+    };
+    return write_scene_file(scene, store, from, save_levels, output);
+}
+
+/// As convert_to_scene_file(), within so much host memory. kept: null keeps nothing; else its front
+/// is written, unless memory holds the scene.
+static Result<Done> convert_streamed(const SceneArguments& source, const BackendOptions& options,
+                                     const LogSink& log, const std::string& output,
+                                     KeptConversion* kept = nullptr) {
     const std::filesystem::path folder = std::filesystem::path(output).parent_path();
     Result<TriangleStore> store = TriangleStore::create(folder);
     if (!store)
@@ -148,13 +175,37 @@ static Result<Done> convert_streamed(const SceneArguments& source, BackendOption
     if (!scene)
         return scene.error();
     from.files = files.stamps();
-    if (scene->soup.triangle_count() > 0)
+    if (scene->soup.triangle_count() > 0) {
+        if (kept)
+            kept->remove();
         return save_held(*scene, from, options, log, output);
-    options.watching = BuildWatching::Shown;
-    const SaveLevels save_levels = [&](const ByteSink& sink) {
-        return save_streamed_levels(*scene, *store, options.host_bytes, folder, options, log, sink);
-    };
-    return write_scene_file(*scene, *store, from, save_levels, output);
+    }
+    return kept ? kept->write_front(*scene, *store, from)
+                : save_stored(*scene, *store, from, options, log, output);
+}
+
+/// As convert_streamed(), from where an earlier run ended.
+static Result<Done> continue_streamed(const SceneArguments& source, const BackendOptions& options,
+                                      const LogSink& log, const std::string& output) {
+    Result<KeptConversion> kept = KeptConversion::open(output, source, options);
+    if (!kept)
+        return kept.error();
+    const Result<Done> found = kept->take_front();
+    Result<Done> done = Done{};
+    if (!found) {
+        say(log, LogLevel::Info,
+            fmt::format("--continue: {}; the conversion is begun", found.error().message));
+        done = convert_streamed(source, options, log, output, &*kept);
+        if (done && !kept->has_front())
+            return done; // memory holds the scene
+    }
+    if (done)
+        done = kept->finish(options, log);
+    if (!done)
+        say(log, LogLevel::Info,
+            fmt::format("the same command goes on from {}, as far as that is sound",
+                        kept->unfinished().string()));
+    return done;
 }
 
 static Result<Done> convert_to_mesh(const SceneArguments& source, const LogSink& log,
@@ -187,6 +238,10 @@ public:
             app, "For .ovc of .ply, .obj, .pbrt and landscape-N: the most host memory to use, 2G, "
                  "besides what the program and the driver take; the triangles wait on the disk of "
                  "OUT");
+        app.add_flag("--continue", go_on_,
+                     "With --host-memory: keep what is done beside OUT, in OUT.unfinished.ovc and "
+                     "two more files, until all of it is; and go on from what an earlier run with "
+                     "the same options kept that was ended");
         app.footer(kConvertExamples);
     }
 
@@ -221,18 +276,20 @@ public:
 private:
     Result<Done> check_host_memory() const {
         if (backend_.host_memory.empty())
-            return Done{};
+            return go_on_ ? Result<Done>(Error{"--continue goes with --host-memory"})
+                          : Result<Done>(Done{});
         if (extension_of(output_) != ".ovc")
             return Error{
                 fmt::format("--host-memory goes with an output in .ovc, not with '{}'", output_)};
         if (source_.scenes.size() > 1 || !source_.model.empty())
             return Error{"--host-memory goes with one input alone"};
-        return Done{};
+        return check_streams(source_.scenes.front());
     }
 
     Result<Done> convert(const BackendOptions& options, const LogSink& log) {
         if (options.host_bytes > 0)
-            return convert_streamed(source_, options, log, output_);
+            return go_on_ ? continue_streamed(source_, options, log, output_)
+                          : convert_streamed(source_, options, log, output_);
         return extension_of(output_) == ".ovc"
                    ? convert_to_scene_file(source_, options, log, output_)
                    : convert_to_mesh(source_, log, output_, log_.quiet());
@@ -240,6 +297,7 @@ private:
 
     SceneArguments source_;
     std::string output_;
+    bool go_on_ = false;
     LogArguments log_;
     BackendArguments backend_; // for .ovc
 };

@@ -2,6 +2,7 @@
 // Reads the scene and builds the structure once, then renders picture after picture.
 #include "host/render/render_job.h"
 
+#include "core/file/value_bytes.h"
 #include "core/system/parallel.h"
 #include "core/system/stopwatch.h"
 #include "core/text/printable.h"
@@ -21,7 +22,6 @@
 #include "host/terminal/message.h"
 #include "host/terminal/progress.h"
 #include "host/terminal/version.h"
-#include "importers/scene_bytes.h"
 #include "importers/scene_fields.h"
 #include "importers/scene_file.h"
 

@@ -15,9 +15,8 @@ namespace ovc {
 
 namespace fs = std::filesystem;
 
-/// Returns everything besides the files that a scene and its levels depend on.
-static std::string request_of(const SceneArguments& arguments, const BackendOptions& backend,
-                              std::optional<ImageSize> size) {
+std::string request_of(const SceneArguments& arguments, const BackendOptions& backend,
+                       std::optional<ImageSize> size) {
     std::error_code ec;
     std::vector<std::string> scenes;
     for (const std::string& scene : arguments.scenes)

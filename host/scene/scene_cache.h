@@ -43,6 +43,10 @@ private:
     bool found_ = false;
 };
 
+/// Returns everything besides the files that a scene and its levels depend on.
+std::string request_of(const SceneArguments& arguments, const BackendOptions& backend,
+                       std::optional<ImageSize> size);
+
 /// Returns a function for write_scene_file() that writes the levels of the backend, which must
 /// outlive it. backend: saves() is true.
 SaveLevels levels_of(const Backend& backend);

@@ -2,6 +2,7 @@
 // OutputFile writes under a name that nobody else takes, then renames once.
 #include "importers/file/output_file.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -51,18 +52,6 @@ fs::path folder_of(const fs::path& path) {
     return path.has_parent_path() ? path.parent_path() : fs::path(".");
 }
 
-/// Follows the path while its last component is a symbolic link, which may dangle.
-fs::path followed(fs::path path) {
-    std::error_code ec;
-    for (int i = 0; i < kMaxLinks && fs::is_symlink(path, ec); ++i) {
-        const fs::path next = fs::read_symlink(path, ec);
-        if (ec)
-            break;
-        path = next.is_absolute() ? next : folder_of(path) / next;
-    }
-    return path;
-}
-
 /// Returns the descriptor of standard output or error that goes to the file of `info`; else -1.
 int standard_descriptor(const struct stat& info) {
     for (const int descriptor : {STDOUT_FILENO, STDERR_FILENO}) {
@@ -105,6 +94,17 @@ const char* unfit_kind(const struct stat& info) {
 
 } // namespace
 
+fs::path behind_links(fs::path path) {
+    std::error_code ec;
+    for (int i = 0; i < kMaxLinks && fs::is_symlink(path, ec); ++i) {
+        const fs::path next = fs::read_symlink(path, ec);
+        if (ec)
+            break;
+        path = next.is_absolute() ? next : folder_of(path) / next;
+    }
+    return path;
+}
+
 Result<Done> OutputFile::check(const fs::path& target) {
     if (const Result<Done> fine = check_place(target); !fine)
         return fine;
@@ -112,7 +112,7 @@ Result<Done> OutputFile::check(const fs::path& target) {
     if (stat(target.c_str(), &info) == 0 && is_written_through(info))
         return Done{};
     // Permissions do not tell everything: root may write to /proc, which takes no files.
-    const Temporary probe = create_beside(followed(target));
+    const Temporary probe = create_beside(behind_links(target));
     if (!probe.file)
         return folder_refused(target, errno);
     std::fclose(probe.file);
@@ -133,7 +133,7 @@ Result<Done> OutputFile::check_place(const fs::path& target) {
     } else if (errno != ENOENT && errno != ENOTDIR) {
         return failed(target, errno);
     }
-    const fs::path folder = folder_of(followed(target));
+    const fs::path folder = folder_of(behind_links(target));
     if (stat(folder.c_str(), &info) != 0)
         return Error{fmt::format("{}: the folder does not exist", target.string())};
     if (!S_ISDIR(info.st_mode))
@@ -149,13 +149,27 @@ Result<OutputFile> OutputFile::create(const fs::path& target) {
     struct stat info;
     if (stat(target.c_str(), &info) == 0 && is_written_through(info))
         return write_through(target);
-    const fs::path final_path = followed(target);
+    const fs::path final_path = behind_links(target);
     Temporary temporary = create_beside(final_path);
     if (!temporary.file)
         return folder_refused(target, errno);
     remember_unfinished(temporary.path);
     std::setvbuf(temporary.file, nullptr, _IOFBF, kBufferBytes);
     return OutputFile(target, final_path, std::move(temporary.path), temporary.file);
+}
+
+Result<OutputFile> OutputFile::go_on(const fs::path& target, const fs::path& unfinished,
+                                     uint64_t offset) {
+    if (const Result<Done> fine = check_place(target); !fine)
+        return fine.error();
+    const int descriptor = open(unfinished.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    std::FILE* file = descriptor < 0 ? nullptr : fdopen(descriptor, "r+b");
+    if (!file || fseeko(file, off_t(offset), SEEK_SET) != 0)
+        return failed(unfinished, errno);
+    std::setvbuf(file, nullptr, _IOFBF, kBufferBytes);
+    OutputFile out(target, behind_links(target), unfinished, file);
+    out.stays_ = true;
+    return out;
 }
 
 /// Duplicates the descriptor of standard output or error, because opening their file anew would
@@ -180,7 +194,7 @@ OutputFile::~OutputFile() {
     if (!file_)
         return;
     file_.reset();
-    if (temporary_.empty())
+    if (temporary_.empty() || stays_)
         return;
     std::error_code ec;
     fs::remove(temporary_, ec);
@@ -193,9 +207,18 @@ void OutputFile::write(const void* data, size_t bytes) {
         error_number_ = errno;
 }
 
-Result<Done> OutputFile::commit() {
+Result<Done> OutputFile::flush() {
     assert(file_);
     if (error_number_ == 0 && std::fflush(file_.get()) != 0)
+        error_number_ = errno;
+    return error_number_ == 0 ? Result<Done>(Done{}) : failed(target_, error_number_);
+}
+
+Result<Done> OutputFile::commit() {
+    assert(file_);
+    (void)flush();
+    // An unfinished file that was begun anew may be longer than what it has become.
+    if (error_number_ == 0 && stays_ && ftruncate(fileno(file_.get()), ftello(file_.get())) != 0)
         error_number_ = errno;
     if (!temporary_.empty()) {
         // fsync() comes before the rename, so that a crash leaves no empty file in the good one's
@@ -207,7 +230,8 @@ Result<Done> OutputFile::commit() {
     }
     if (error_number_ != 0)
         return failed(target_, error_number_);
-    forget_unfinished();
+    if (!stays_)
+        forget_unfinished();
     file_.reset();
     return Done{};
 }
@@ -229,7 +253,7 @@ bool is_same_output(const fs::path& a, const fs::path& b) {
     if (fs::equivalent(a, b, ec) && !ec)
         return true;
     const auto plain = [&](const fs::path& path) {
-        return fs::weakly_canonical(fs::absolute(followed(path), ec), ec);
+        return fs::weakly_canonical(fs::absolute(behind_links(path), ec), ec);
     };
     return plain(a) == plain(b);
 }

@@ -24,6 +24,10 @@ public:
     static Result<Done> check(const std::filesystem::path& target);
 
     static Result<OutputFile> create(const std::filesystem::path& target);
+    /// Goes on behind the first `offset` bytes of an unfinished file, which is in the target's
+    /// folder and stays there until commit() puts it in its place. It is made where there is none.
+    static Result<OutputFile> go_on(const std::filesystem::path& target,
+                                    const std::filesystem::path& unfinished, uint64_t offset);
 
     OutputFile(OutputFile&&) = default;
     OutputFile& operator=(OutputFile&&) = delete;
@@ -43,6 +47,8 @@ public:
 
     /// Returns whether a write has failed; commit() then says why.
     bool has_failed() const { return error_number_ != 0; }
+    /// Hands all that was written to the system. Error: a write has failed.
+    Result<Done> flush();
 
     /// Puts the file in its place. Nothing may be written after it has succeeded.
     Result<Done> commit();
@@ -68,9 +74,13 @@ private:
     std::filesystem::path target_;     // as given, for messages
     std::filesystem::path final_path_; // the target with its links followed
     std::filesystem::path temporary_;  // empty: written straight through
+    bool stays_ = false;               // where it is not committed
     std::unique_ptr<std::FILE, CloseFile> file_;
     int error_number_ = 0; // of the first write that failed
 };
+
+/// Follows the path while its last component is a symbolic link, which may dangle.
+std::filesystem::path behind_links(std::filesystem::path path);
 
 /// Returns whether writing to one path would change the file at the other, whatever links and dots
 /// lie between. False for devices and FIFOs, which anything may share.

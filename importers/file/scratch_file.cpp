@@ -40,6 +40,13 @@ Result<ScratchFile> ScratchFile::create(const std::filesystem::path& folder) {
     return ScratchFile(place, descriptor);
 }
 
+Result<ScratchFile> ScratchFile::open_named(const std::filesystem::path& path) {
+    const int descriptor = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
+    if (descriptor < 0)
+        return Error{fmt::format("{}: cannot be written: {}", path.string(), std::strerror(errno))};
+    return ScratchFile(path.has_parent_path() ? path.parent_path() : ".", descriptor);
+}
+
 ScratchFile::~ScratchFile() {
     if (descriptor_ >= 0)
         close(descriptor_);
@@ -52,16 +59,8 @@ bool ScratchFile::fail(int error_number) {
 }
 
 bool ScratchFile::write(uint64_t offset, Bytes bytes) {
-    while (!bytes.empty()) {
-        const ssize_t done = pwrite(descriptor_, bytes.data(), bytes.size(), off_t(offset));
-        if (done < 0 && errno == EINTR)
-            continue;
-        if (done <= 0)
-            return fail(done < 0 ? errno : ENOSPC);
-        bytes = bytes.subspan(size_t(done));
-        offset += uint64_t(done);
-    }
-    return true;
+    const int failed = write_file(descriptor_, offset, bytes);
+    return failed == 0 || fail(failed);
 }
 
 bool ScratchFile::read(uint64_t offset, std::span<std::byte> bytes) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// ScratchFile has no name, so that the system frees it however the process ends.
+// ScratchFile has no name, so that the system frees it however the process ends, unless a later
+// process is to find it.
 #pragma once
 
 #include "core/file/archive.h"
@@ -15,11 +16,14 @@
 
 namespace ovc {
 
-/// A file of any size in a folder, for one process. Any number of threads may use it at once.
+/// A file of any size in a folder. Any number of threads may use it at once.
 class ScratchFile {
 public:
     /// Error: the folder does not exist or takes no files.
     static Result<ScratchFile> create(const std::filesystem::path& folder);
+
+    /// Opens a file of this name, which stays, or makes it. Error: it cannot be written.
+    static Result<ScratchFile> open_named(const std::filesystem::path& path);
 
     ScratchFile(ScratchFile&& other) noexcept
         : folder_(std::move(other.folder_)),

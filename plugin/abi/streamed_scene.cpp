@@ -9,6 +9,7 @@
 #include "plugin/abi/struct_size.h"
 
 #include <cmath>
+#include <cstddef>
 #include <vector>
 
 namespace ovc {
@@ -21,6 +22,9 @@ void call_host(Function function, Arguments... arguments) {
     if (function(arguments...) != 0)
         throw Cancelled();
 }
+
+/// The size of ovc_streamed_scene in headers that know of no steps.
+constexpr size_t kBeforeSteps = offsetof(ovc_streamed_scene, keep_step);
 
 class HostSource final : public TriangleSource {
 public:
@@ -62,16 +66,40 @@ private:
     const ovc_streamed_scene& host_;
 };
 
+class HostSteps final : public StepKeeper {
+public:
+    explicit HostSteps(const ovc_streamed_scene& host) : host_(host) {
+        for (size_t i = 0; i < host.kept_count; ++i)
+            kept_.emplace_back(static_cast<const std::byte*>(host.kept[i].bytes),
+                               host.kept[i].size);
+    }
+
+    std::span<const Bytes> kept() const override { return kept_; }
+    void keep(Bytes step) override {
+        call_host(host_.keep_step, host_.user, static_cast<const void*>(step.data()), step.size());
+    }
+    void read_written(uint64_t offset, std::span<std::byte> to) override {
+        call_host(host_.read_written, host_.user, offset, static_cast<void*>(to.data()), to.size());
+    }
+
+private:
+    const ovc_streamed_scene& host_;
+    std::vector<Bytes> kept_;
+};
+
 ovc_streamed_scene checked(const ovc_streamed_scene* given) {
     if (!given)
         invalid("save_streamed: scene is NULL");
-    const ovc_streamed_scene scene = whole("ovc_streamed_scene", given);
+    const ovc_streamed_scene scene = whole("ovc_streamed_scene", given, kBeforeSteps);
     if (scene.reserved)
         invalid("ovc_streamed_scene.reserved is not 0");
     if (!scene.read_corners || !scene.write_scratch || !scene.read_scratch || !scene.write)
         invalid("ovc_streamed_scene: a function is NULL");
     if (scene.mesh_count && !scene.meshes)
         invalid("ovc_streamed_scene.meshes is NULL, but mesh_count is not 0");
+    if (scene.kept_count && (!scene.kept || !scene.keep_step || !scene.read_written))
+        invalid("ovc_streamed_scene: kept, keep_step or read_written is NULL, but kept_count is "
+                "not 0");
     for (uint32_t m = 0; m < scene.mesh_count; ++m) {
         const ovc_streamed_mesh& mesh = scene.meshes[m];
         if (mesh.has_doubles > 1 || mesh.reserved)
@@ -98,6 +126,7 @@ ovc_result save_streamed(ovc_device device, const ovc_scene_config* config,
         const ovc_streamed_scene scene = checked(given);
         HostSource source(scene);
         HostScratch scratch(scene);
+        HostSteps steps(scene);
         const ByteSink sink = [&](Bytes bytes) {
             const HostFunction mark;
             return scene.write(scene.user, bytes.data(), bytes.size()) == 0;
@@ -106,8 +135,8 @@ ovc_result save_streamed(ovc_device device, const ovc_scene_config* config,
             scene.host_memory_bytes ? scene.host_memory_bytes : ~uint64_t(0) / 2;
         const LoopThreads::Scope threads(device->loops);
         with_progress(asked, "save_streamed", [&](BuildProgress* progress) {
-            check(save_structure({source, scratch, host_bytes}, device->gl->info(), asked, sink,
-                                 device->log, progress));
+            check(save_structure({source, scratch, host_bytes, scene.keep_step ? &steps : nullptr},
+                                 device->gl->info(), asked, sink, device->log, progress));
             if (progress)
                 progress->finish(); // the last chance to be cancelled
         });

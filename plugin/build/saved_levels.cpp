@@ -359,13 +359,27 @@ LevelsWriter::LevelsWriter(const ByteSink& sink) : writer_(sink, kKind, kVersion
     writer_.begin("texels");
 }
 
-void LevelsWriter::add(const Leaf& leaf, const Page& page) {
-    leaves_.push_back(
-        {leaf.cell, leaf.box, leaf.grid, leaf.frame.origin, leaf.frame.scale, leaf.list().size()});
-    pages_.push_back({page.view().size(), page.depth, checksum_of(bytes_of(page.view()))});
-    const auto head = page.view().first(kHeadTexels);
+SavedLeaf saved_leaf(const Leaf& leaf) {
+    return {leaf.cell,         leaf.box,         leaf.grid,
+            leaf.frame.origin, leaf.frame.scale, leaf.list().size()};
+}
+
+SavedPage saved_page(const Page& page) {
+    return {page.view().size(), page.depth, checksum_of(bytes_of(page.view()))};
+}
+
+uint64_t version_of_levels() {
+    return checksum_of_layout() + kVersion;
+}
+
+void LevelsWriter::add(const SavedLeaf& leaf, const SavedPage& page,
+                       std::span<const uvec4> texels) {
+    assert(page.texels == texels.size());
+    leaves_.push_back(leaf);
+    pages_.push_back(page);
+    const auto head = texels.first(kHeadTexels);
     heads_.insert(heads_.end(), head.begin(), head.end());
-    writer_.write(bytes_of(page.view()));
+    writer_.write(bytes_of(texels));
 }
 
 void LevelsWriter::begin_lists() {
@@ -401,7 +415,8 @@ bool save_levels(const BuiltScene& scene, const ByteSink& sink) {
     const std::vector<const BuiltScene*> scenes = cuts_of(scene);
     for (const BuiltScene* cut : scenes)
         for (size_t i = 0; i < cut->level1.leaves.size(); ++i) // pages of others may follow
-            writer.add(cut->level1.leaves[i], cut->pages[i]);
+            writer.add(saved_leaf(cut->level1.leaves[i]), saved_page(cut->pages[i]),
+                       cut->pages[i].view());
     writer.begin_lists();
     std::vector<LevelsCut> cuts;
     for (const BuiltScene* cut : scenes) {

@@ -54,13 +54,19 @@ struct SavedPage {
     uint64_t checksum = 0; // so that the page can be read by itself
 };
 
+SavedLeaf saved_leaf(const Leaf& leaf);
+SavedPage saved_page(const Page& page);
+
+/// Returns a number that changes with the version of what is saved.
+uint64_t version_of_levels();
+
 /// Writes saved levels leaf by leaf, so that nobody need hold all of them.
 class LevelsWriter {
 public:
     explicit LevelsWriter(const ByteSink& sink);
 
     /// Writes the page of the next leaf.
-    void add(const Leaf& leaf, const Page& page);
+    void add(const SavedLeaf& leaf, const SavedPage& page, std::span<const uvec4> texels);
     /// Ends the leaves. The triangles of all of them come next, in order and in parts of any size.
     void begin_lists();
     void add_lists(std::span<const TriangleId> triangles);
@@ -68,6 +74,8 @@ public:
     bool finish(const LevelsKey& key, std::span<const LevelsCut> cuts);
 
     uint64_t leaves() const { return leaves_.size(); }
+    /// Returns how many bytes were passed to the sink.
+    uint64_t bytes() const { return writer_.bytes(); }
 
 private:
     ArchiveWriter writer_;

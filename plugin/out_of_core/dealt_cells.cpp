@@ -3,6 +3,9 @@
 // triangles in any order.
 #include "plugin/out_of_core/dealt_cells.h"
 
+#include "core/file/checksum.h"
+#include "plugin/out_of_core/build_steps.h"
+
 #include <algorithm>
 #include <cassert>
 #include <cstring>
@@ -44,8 +47,8 @@ void DealtCells::add(size_t cell, TriangleId name, Bytes corners, const Box& bou
     to.buffer.resize(at + record_bytes_);
     std::memcpy(to.buffer.data() + at, &name, sizeof(name));
     std::memcpy(to.buffer.data() + at + sizeof(name), corners.data(), corners.size());
-    to.count += 1;
-    to.bounds.add(bounds);
+    to.dealt.count += 1;
+    to.dealt.bounds.add(bounds);
     if (to.buffer.size() == full_bytes_)
         write_out(to);
 }
@@ -53,7 +56,7 @@ void DealtCells::add(size_t cell, TriangleId name, Bytes corners, const Box& bou
 void DealtCells::write_out(Cell& cell) {
     const uint64_t offset = scratch_.allocate(cell.buffer.size());
     scratch_.write(offset, cell.buffer);
-    cell.extents.push_back(offset);
+    cell.dealt.extents.push_back({offset, checksum_of(cell.buffer)});
     cell.buffer.clear();
 }
 
@@ -65,18 +68,37 @@ void DealtCells::flush(size_t cell) {
 }
 
 void DealtCells::clear(size_t cell) {
-    cells_[cell].count = 0;
-    cells_[cell].bounds = {};
-    cells_[cell].extents.clear();
+    cells_[cell].dealt = {};
+}
+
+std::vector<DealtCell> DealtCells::dealt() const {
+    std::vector<DealtCell> all;
+    for (const Cell& cell : cells_)
+        all.push_back(cell.dealt);
+    return all;
+}
+
+void DealtCells::restore(std::vector<DealtCell> dealt) {
+    if (dealt.size() != cells_.size())
+        BuildSteps::fail();
+    for (size_t c = 0; c < cells_.size(); ++c) {
+        const uint64_t bytes = dealt[c].count * record_bytes_;
+        if (dealt[c].extents.size() != (bytes + full_bytes_ - 1) / full_bytes_)
+            BuildSteps::fail();
+        cells_[c].dealt = std::move(dealt[c]);
+    }
 }
 
 size_t DealtCells::extent_bytes(const Cell& cell, size_t extent) const {
-    return std::min(full_bytes_, cell.count * record_bytes_ - extent * full_bytes_);
+    return std::min(full_bytes_, cell.dealt.count * record_bytes_ - extent * full_bytes_);
 }
 
 void DealtCells::read_extent(const Cell& cell, size_t extent, std::span<std::byte> to) const {
     assert(cell.buffer.empty() && to.size() == extent_bytes(cell, extent));
-    scratch_.read(cell.extents[extent], to);
+    const DealtExtent& from = cell.dealt.extents[extent];
+    scratch_.read(from.offset, to);
+    if (checksum_of(to) != from.checksum)
+        throw damaged_scratch();
 }
 
 Bytes DealtCells::corners_of(const std::byte* record, TriangleId name) const {
@@ -86,7 +108,7 @@ Bytes DealtCells::corners_of(const std::byte* record, TriangleId name) const {
 void DealtCells::for_each(size_t cell, FunctionRef<void(TriangleId, Bytes)> visit) const {
     const Cell& from = cells_[cell];
     std::vector<std::byte> records;
-    for (size_t extent = 0; extent < from.extents.size(); ++extent) {
+    for (size_t extent = 0; extent < from.dealt.extents.size(); ++extent) {
         records.resize(extent_bytes(from, extent));
         read_extent(from, extent, records);
         for (size_t at = 0; at < records.size(); at += record_bytes_) {
@@ -98,15 +120,15 @@ void DealtCells::for_each(size_t cell, FunctionRef<void(TriangleId, Bytes)> visi
 
 LocalSoup DealtCells::read(size_t cell) const {
     const Cell& from = cells_[cell];
-    std::vector<std::byte> records(from.count * record_bytes_);
-    for (size_t extent = 0; extent < from.extents.size(); ++extent)
+    std::vector<std::byte> records(from.dealt.count * record_bytes_);
+    for (size_t extent = 0; extent < from.dealt.extents.size(); ++extent)
         read_extent(from, extent,
                     std::span(records).subspan(extent * full_bytes_, extent_bytes(from, extent)));
     struct Record {
         TriangleId name;
         uint32_t record;
     };
-    std::vector<Record> order(from.count);
+    std::vector<Record> order(from.dealt.count);
     for (uint32_t i = 0; i < order.size(); ++i)
         order[i] = {name_at(records.data() + i * record_bytes_), i};
     std::ranges::sort(order, {}, &Record::name);

@@ -7,6 +7,7 @@
 #include "plugin/out_of_core/local_soup.h"
 #include "plugin/structure/triangle_source.h"
 
+#include <concepts>
 #include <cstdint>
 #include <mutex>
 #include <span>
@@ -14,7 +15,27 @@
 
 namespace ovc {
 
-/// Each cell has a buffer in memory, which goes to the scratch space whenever it is full.
+/// Triangles in the scratch space, one behind the other.
+struct DealtExtent {
+    uint64_t offset;
+    uint64_t checksum;
+};
+
+/// What is known of a cell whose triangles all lie in the scratch space.
+struct DealtCell {
+    uint64_t count = 0;
+    Box bounds;
+    std::vector<DealtExtent> extents; // all full but the last
+};
+
+template <class Fields, class AnyCell>
+requires std::same_as<std::remove_const_t<AnyCell>, DealtCell>
+void each_field(Fields& fields, AnyCell& cell) {
+    fields(cell.count, cell.bounds, cell.extents);
+}
+
+/// Each cell has a buffer in memory, which goes to the scratch space whenever it is full. Reading
+/// throws a Failure where the scratch space gives other bytes than it got.
 class DealtCells {
 public:
     /// buffer_bytes: of each cell, at most.
@@ -31,8 +52,12 @@ public:
     void clear(size_t cell);
 
     /// Returns the number of a cell's triangles, and the box around them.
-    uint64_t count(size_t cell) const { return cells_[cell].count; }
-    const Box& bounds(size_t cell) const { return cells_[cell].bounds; }
+    uint64_t count(size_t cell) const { return cells_[cell].dealt.count; }
+    const Box& bounds(size_t cell) const { return cells_[cell].dealt.bounds; }
+    /// Returns all cells, which are flushed, for restore().
+    std::vector<DealtCell> dealt() const;
+    /// Takes the cells of an earlier build of the same scene, which lie in the scratch space.
+    void restore(std::vector<DealtCell> dealt);
     /// Calls visit(name, corners) for each of a cell's triangles, in any order.
     void for_each(size_t cell, FunctionRef<void(TriangleId, Bytes)> visit) const;
     /// Returns a cell's triangles. Any number of threads may call this.
@@ -41,10 +66,8 @@ public:
 private:
     struct Cell {
         std::mutex mutex; // guards the other members while triangles are added
-        uint64_t count = 0;
-        Box bounds;
-        std::vector<std::byte> buffer;
-        std::vector<uint64_t> extents; // in the scratch space, all full but the last
+        DealtCell dealt;
+        std::vector<std::byte> buffer; // its last triangles
     };
 
     void write_out(Cell& cell);

@@ -9,6 +9,7 @@
 #include "kdtree/cells.h"
 #include "plugin/build/build_scene.h"
 #include "plugin/build/saved_levels.h"
+#include "plugin/out_of_core/build_steps.h"
 #include "plugin/out_of_core/cell_builder.h"
 #include "plugin/out_of_core/deal_source.h"
 #include "plugin/out_of_core/dealt_cells.h"
@@ -61,7 +62,8 @@ public:
           progress_(progress),
           all_(triangles_of(source_.meshes())),
           first_numbers_(first_numbers_of(source_.meshes())),
-          levels_(sink, scratch_) {}
+          steps_(scene.steps, scratch_),
+          levels_(sink, scratch_, steps_) {}
 
     Result<StreamedLevels> run() {
         if (const uint64_t smallest = smallest_host_budget(all_, budget_.threads);
@@ -74,6 +76,7 @@ public:
         SourceSurvey surveyed = survey_source(source_, rate, progress_);
         hittable_ = surveyed.hittable();
         set_limits(hittable_);
+        check_steps(surveyed.sums.checksum(), rate);
         if (hittable_ > 0) {
             if (const Result<Done> dealt =
                     deal(std::move(surveyed.sample), rate, surveyed.found.bounds);
@@ -96,6 +99,23 @@ private:
             std::clamp<uint64_t>(std::min(wanted, budget_.leaf_triangles()), 1, kNone - 1));
     }
 
+    /// Throws a Failure where steps were kept of another scene, or where they would come out
+    /// differently now.
+    void check_steps(uint64_t soup, uint32_t rate) {
+        Checksum sum;
+        for (const uint64_t number :
+             {version_of_levels(), soup, uint64_t(rate), uint64_t(max_triangles_), budget_.bytes,
+              uint64_t(budget_.threads), limits_.triangles, limits_.page_bytes,
+              limits_.whole_bytes})
+            sum.add_value(number);
+        const uint64_t expected = sum.value();
+        uint64_t found = 0;
+        if (!steps_.take(found))
+            steps_.keep(expected);
+        else if (found != expected)
+            BuildSteps::fail();
+    }
+
     /// Chooses planes by the sample, deals all triangles, and plans a leaf for each cell.
     Result<Done> deal(LocalSoup sample, uint32_t rate, const Box& bounds) {
         std::vector<TriangleId> drawn = sample.triangles();
@@ -113,7 +133,13 @@ private:
         const size_t cells = cells_.size() + 1; // the last one is that of far-reaching triangles
         dealt_.emplace(cells, source_.meshes(), budget_.buffer_bytes(cells), scratch_);
         const CellFinder finder(planes_, cells_, level1_.padding);
-        deal_source(source_, finder, hittable_, max_triangles_, *dealt_, progress_);
+        if (std::vector<DealtCell> dealt; steps_.take(dealt)) {
+            dealt_->restore(std::move(dealt));
+            add(progress_, all_);
+        } else {
+            deal_source(source_, finder, hittable_, max_triangles_, *dealt_, progress_);
+            steps_.keep(dealt_->dealt());
+        }
         uint64_t largest = 0;
         for (size_t cell = 0; cell < cells; ++cell)
             largest = std::max(largest, dealt_->count(cell));
@@ -177,7 +203,10 @@ private:
         if (!loose)
             return loose.error();
         options.loose = *loose;
-        for (size_t at = 0; at < order.size();) {
+        size_t at = 0;
+        for (; at < order.size() && levels_.add_kept(order[at], order[at] == cells_.size()); ++at)
+            add(progress_, 2 * dealt_->count(order[at]));
+        while (at < order.size()) {
             const size_t end = end_of_batch(order, at);
             std::vector<std::optional<Result<BuiltCell>>> built(end - at);
             parallel_for(built.size(), 1, [&](size_t first, size_t last) {
@@ -215,11 +244,13 @@ private:
     /// Lets triangles that share no side lie in one unit where most pages do better so, as a build
     /// in memory does. A few cells tell for all.
     Result<LoosePairs> choose_loose_pairs(std::span<const size_t> order, CellOptions options,
-                                          uint64_t references) const {
+                                          uint64_t references) {
         const size_t asked = std::min<size_t>(order.size(), 4);
         if (!level1_.shares_frame)
             return LoosePairs{};
         options.loose = {true, double(references) / double(hittable_)};
+        if (steps_.take(options.loose.allowed))
+            return options.loose;
         uint64_t all = 0, loose = 0;
         for (size_t i = 0; i < asked; ++i) {
             const Result<BuiltCell> built =
@@ -233,6 +264,7 @@ private:
             }
         }
         options.loose.allowed = 2 * loose > all;
+        steps_.keep(options.loose.allowed);
         return options.loose;
     }
 
@@ -253,6 +285,7 @@ private:
     std::optional<DealtCells> dealt_;
     std::vector<Leaf> planned_;
     std::vector<uint32_t> planned_of_; // into planned_, for each cell; kNone: it is empty
+    BuildSteps steps_;
     StreamedLevelsWriter levels_;
 };
 

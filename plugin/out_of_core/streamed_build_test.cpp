@@ -22,6 +22,7 @@ namespace {
 using test::ArchiveMemory;
 using test::ScratchMemory;
 using test::SoupSource;
+using test::StepMemory;
 
 constexpr uint64_t kSmall = 8 << 20; // enough for a few threads
 
@@ -222,6 +223,69 @@ TEST_F(StreamedBuild, EndsWhereAFunctionOfItsCallerFails) {
     BuildProgress stops([&](double done, const char*) { return done < 0.3; });
     const ByteSink any = [](Bytes) { return true; };
     EXPECT_THROW((void)stream_levels({much, scratch, kSmall}, {}, plan, any, &stops), Cancelled);
+}
+
+/// A build that keeps its steps.
+struct SteppedBuild {
+    const Soup& soup;
+    ScratchMemory scratch;
+    ArchiveMemory saved;
+    std::vector<std::vector<std::byte>> steps{};
+
+    void run(StepMemory& keeper, uint64_t host_bytes = kSmall) {
+        SoupSource source(soup);
+        const MemoryPlan plan = plan_of(1 << 30);
+        const auto done = stream_levels({source, scratch, host_bytes, &keeper},
+                                        {.leaf_triangles = 700}, plan, saved.sink());
+        EXPECT_TRUE(done) << done.error().message;
+        steps = keeper.steps();
+    }
+};
+
+TEST_F(StreamedBuild, GoesOnBehindAnyStepWithTheSameBytes) {
+    const Soup soup = several_meshes();
+    SteppedBuild whole{soup};
+    StepMemory keeper;
+    whole.run(keeper);
+    ASSERT_GT(whole.steps.size(), 20u);
+    for (size_t kept = 0; kept <= whole.steps.size(); ++kept) {
+        SteppedBuild again{soup, ScratchMemory(whole.scratch)};
+        StepMemory found(std::span(whole.steps).first(kept), whole.saved.bytes());
+        again.run(found);
+        EXPECT_EQ(again.steps.size(), whole.steps.size() - kept);
+        ASSERT_EQ(again.saved.size(), whole.saved.size());
+        EXPECT_TRUE(std::ranges::equal(again.saved.bytes(), whole.saved.bytes())) << kept;
+    }
+}
+
+TEST_F(StreamedBuild, RefusesStepsThatAreDamagedOrOfAnotherBuild) {
+    const Soup soup = test::closed_grid(140);
+    SteppedBuild whole{soup};
+    StepMemory keeper;
+    whole.run(keeper);
+    const auto expect_refused = [&](auto steps, uint64_t host_bytes, const auto& spoil) {
+        SteppedBuild again{soup, ScratchMemory(whole.scratch)};
+        ArchiveMemory written(whole.saved.bytes());
+        spoil(again, written);
+        StepMemory found(steps, written.bytes());
+        EXPECT_THROW(again.run(found, host_bytes), Failure);
+    };
+    const auto as_it_is = [](auto&, auto&) {};
+    expect_refused(whole.steps, kSmall + 1, as_it_is);
+    auto cut = whole.steps;
+    cut[1].pop_back();
+    expect_refused(cut, kSmall, as_it_is);
+    std::swap(cut[1] = whole.steps[1], cut[2]);
+    expect_refused(cut, kSmall, as_it_is);
+    expect_refused(whole.steps, kSmall,
+                   [](auto&, ArchiveMemory& written) { written.data()[1000] ^= std::byte(1); });
+    // The lists of leaves come last there.
+    const auto lists = [&](SteppedBuild& again, auto&) {
+        again.scratch.spoil(whole.scratch.bytes() - sizeof(TriangleId) * soup.triangle_count());
+    };
+    expect_refused(whole.steps, kSmall, lists);
+    expect_refused(std::span(whole.steps).first(3), kSmall,
+                   [](SteppedBuild& again, auto&) { again.scratch.spoil(0); });
 }
 
 } // namespace

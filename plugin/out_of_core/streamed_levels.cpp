@@ -20,26 +20,63 @@ static ByteSink throwing(const ByteSink& sink) {
     };
 }
 
-StreamedLevelsWriter::StreamedLevelsWriter(const ByteSink& sink, ScratchSpace& scratch)
-    : writer_(throwing(sink)), scratch_(scratch) {}
+StreamedLevelsWriter::StreamedLevelsWriter(const ByteSink& sink, ScratchSpace& scratch,
+                                           BuildSteps& steps)
+    : writer_(throwing(sink)), scratch_(scratch), steps_(steps) {}
 
-void StreamedLevelsWriter::add(size_t cell, bool is_far, BuiltCell built) {
+void StreamedLevelsWriter::add_tree(size_t cell, bool is_far, std::vector<KdNode> nodes,
+                                    size_t leaves) {
     const auto first = uint32_t(writer_.leaves());
     if (is_far) {
         assert(first == 0);
-        far_leaves_ = uint32_t(built.leaves.size());
-    } else {
-        for (KdNode& node : built.nodes)
-            node = node.moved(0, first);
-        trees_.push_back({cell, std::move(built.nodes), first + uint32_t(built.leaves.size())});
+        far_leaves_ = uint32_t(leaves);
+        return;
     }
+    for (KdNode& node : nodes)
+        node = node.moved(0, first);
+    trees_.push_back({cell, std::move(nodes), first + uint32_t(leaves)});
+}
+
+StreamedLevelsWriter::List StreamedLevelsWriter::put_list(std::span<const TriangleId> triangles) {
+    const Bytes bytes = bytes_of(triangles);
+    const List list{scratch_.allocate(bytes.size()), triangles.size(), checksum_of(bytes)};
+    scratch_.write(list.offset, bytes);
+    return list;
+}
+
+void StreamedLevelsWriter::add(size_t cell, bool is_far, BuiltCell built) {
+    add_tree(cell, is_far, built.nodes, built.leaves.size());
+    std::vector<KeptLeaf> kept;
     for (size_t i = 0; i < built.leaves.size(); ++i) {
-        const std::span<const TriangleId> list = built.leaves[i].triangles;
-        lists_.push_back({scratch_.allocate(list.size_bytes()), list.size()});
-        scratch_.write(lists_.back().offset, bytes_of(list));
-        writer_.add(built.leaves[i], built.pages[i]);
+        lists_.push_back(put_list(built.leaves[i].triangles));
+        kept.push_back({saved_leaf(built.leaves[i]), saved_page(built.pages[i]), writer_.bytes(),
+                        lists_.back()});
+        writer_.add(kept.back().leaf, kept.back().page, built.pages[i].view());
     }
     duplicates_.insert(duplicates_.end(), built.duplicates.begin(), built.duplicates.end());
+    steps_.keep(uint64_t(cell), built.nodes, kept, built.duplicates);
+}
+
+bool StreamedLevelsWriter::add_kept(size_t cell, bool is_far) {
+    uint64_t kept_cell = 0;
+    std::vector<KdNode> nodes;
+    std::vector<KeptLeaf> leaves;
+    std::vector<Duplicates::Pair> duplicates;
+    if (!steps_.take(kept_cell, nodes, leaves, duplicates))
+        return false;
+    if (kept_cell != cell)
+        BuildSteps::fail();
+    add_tree(cell, is_far, std::move(nodes), leaves.size());
+    std::vector<uvec4> texels;
+    for (const KeptLeaf& leaf : leaves) {
+        texels.resize(leaf.page.texels);
+        steps_.read_written(leaf.page_offset, std::as_writable_bytes(std::span(texels)),
+                            leaf.page.checksum);
+        lists_.push_back(leaf.list);
+        writer_.add(leaf.leaf, leaf.page, texels);
+    }
+    duplicates_.insert(duplicates_.end(), duplicates.begin(), duplicates.end());
+    return true;
 }
 
 /// Puts the trees over the cells in the places of the cells.
@@ -76,6 +113,8 @@ void StreamedLevelsWriter::write_lists() {
     for (const List& from : lists_) {
         list.resize(from.triangles);
         scratch_.read(from.offset, std::as_writable_bytes(std::span(list)));
+        if (checksum_of(bytes_of(std::span<const TriangleId>(list))) != from.checksum)
+            throw damaged_scratch();
         writer_.add_lists(list);
     }
 }

@@ -4,6 +4,7 @@
 
 #include "core/result.h"
 #include "plugin/build/saved_levels.h"
+#include "plugin/out_of_core/build_steps.h"
 #include "plugin/out_of_core/cell_builder.h"
 #include "plugin/structure/triangle_source.h"
 
@@ -23,12 +24,14 @@ struct StreamedLevels {
 
 class StreamedLevelsWriter {
 public:
-    /// The sink outlives the writer, which throws Cancelled where the sink wants no more.
-    StreamedLevelsWriter(const ByteSink& sink, ScratchSpace& scratch);
+    /// All outlive the writer, which throws Cancelled where the sink wants no more.
+    StreamedLevelsWriter(const ByteSink& sink, ScratchSpace& scratch, BuildSteps& steps);
 
     /// Writes the next cell, by its number among the cells of `planes` in finish(). The cell
     /// of far-reaching triangles comes first, if it is there.
     void add(size_t cell, bool is_far, BuiltCell built);
+    /// Writes the next cell as an earlier build did, if that came so far. Returns whether it did.
+    bool add_kept(size_t cell, bool is_far);
 
     /// Ends the levels. level1: has everything but nodes and leaves. planes: the tree whose leaf
     /// nodes are the cells. Error: there are too many leaves.
@@ -40,6 +43,14 @@ private:
     struct List {
         uint64_t offset;
         uint64_t triangles;
+        uint64_t checksum;
+    };
+    /// Where a leaf lies that has been written, and all else that is known of it.
+    struct KeptLeaf {
+        SavedLeaf leaf;
+        SavedPage page;
+        uint64_t page_offset; // among what was passed to the sink
+        List list;
     };
     /// The tree over a cell that is not empty.
     struct CellTree {
@@ -48,11 +59,14 @@ private:
         uint32_t end;              // of its leaves
     };
 
+    void add_tree(size_t cell, bool is_far, std::vector<KdNode> nodes, size_t leaves);
+    List put_list(std::span<const TriangleId> triangles);
     std::vector<KdNode> joined_nodes(std::span<const KdNode> planes) const;
     void write_lists();
 
     LevelsWriter writer_;
     ScratchSpace& scratch_;
+    BuildSteps& steps_;
     uint32_t far_leaves_ = 0;
     std::vector<List> lists_;
     std::vector<CellTree> trees_; // in the order of cells

@@ -23,9 +23,8 @@ public:
 
     std::span<const SourceMesh> meshes() const override { return meshes_; }
     void read(uint32_t mesh, uint64_t first, std::span<std::byte> corners) override {
-        if (reads_left_ == 0)
+        if (reads_left_.fetch_sub(1) <= 0)
             throw Cancelled();
-        --reads_left_;
         const Chunk& chunk = soup_.chunks[mesh];
         std::memcpy(corners.data(), chunk.address_of(uint32_t(first)), corners.size());
     }
@@ -41,6 +40,15 @@ private:
 
 class ScratchMemory final : public ScratchSpace {
 public:
+    ScratchMemory() = default;
+    /// Takes the bytes of another, but forgets what was allocated, as a file is found.
+    explicit ScratchMemory(const ScratchMemory& other) : memory_(other.memory_) {}
+    /// Changes a byte in every hundred from an offset on.
+    void spoil(size_t offset) {
+        for (; offset < memory_.size(); offset += 100)
+            memory_[offset] ^= std::byte(1);
+    }
+
     void write(uint64_t offset, Bytes bytes) override {
         const std::lock_guard lock(mutex_);
         memory_.resize(std::max(memory_.size(), size_t(offset + bytes.size())));
@@ -54,6 +62,31 @@ public:
 private:
     std::mutex mutex_;
     std::vector<std::byte> memory_;
+};
+
+/// Keeps steps in memory.
+class StepMemory final : public StepKeeper {
+public:
+    /// As after a build that ended behind its first `steps` steps. written: what it wrote.
+    StepMemory(std::span<const std::vector<std::byte>> steps = {}, Bytes written = {})
+        : found_(steps.begin(), steps.end()),
+          kept_(found_.begin(), found_.end()),
+          written_(written) {}
+
+    std::span<const Bytes> kept() const override { return kept_; }
+    void keep(Bytes step) override { all_.emplace_back(step.begin(), step.end()); }
+    void read_written(uint64_t offset, std::span<std::byte> to) override {
+        std::copy_n(written_.begin() + ptrdiff_t(offset), to.size(), to.begin());
+    }
+
+    /// Returns the steps that were kept anew.
+    const std::vector<std::vector<std::byte>>& steps() const { return all_; }
+
+private:
+    const std::vector<std::vector<std::byte>> found_;
+    const std::vector<Bytes> kept_;
+    const Bytes written_;
+    std::vector<std::vector<std::byte>> all_;
 };
 
 } // namespace ovc::test

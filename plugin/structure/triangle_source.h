@@ -46,9 +46,26 @@ public:
     uint64_t allocate(uint64_t bytes) { return end_.fetch_add(bytes); }
     /// Returns how many bytes were allocated.
     uint64_t bytes() const { return end_; }
+    /// Goes on behind what an earlier build allocated.
+    void go_on_at(uint64_t bytes) { end_ = bytes; }
 
 private:
     std::atomic<uint64_t> end_{0};
+};
+
+/// Keeps what a build has done, step by step. A build of the same scene that comes after its end
+/// finds the steps, and the scratch space as it was.
+class StepKeeper {
+public:
+    virtual ~StepKeeper() = default;
+
+    /// Returns the steps of the build before, in order.
+    virtual std::span<const Bytes> kept() const = 0;
+    /// Keeps a step behind those, once all that was passed to the sink before it is kept too.
+    /// Throws Cancelled where it cannot, as the next does.
+    virtual void keep(Bytes step) = 0;
+    /// Reads bytes that the build before passed to its sink, by their offset among all.
+    virtual void read_written(uint64_t offset, std::span<std::byte> to) = 0;
 };
 
 /// Where a scene comes from, and what its build may take.
@@ -57,6 +74,7 @@ struct StreamedScene {
     ScratchSpace& scratch;
     /// The max bytes of host memory, besides what the program takes itself.
     uint64_t host_bytes;
+    StepKeeper* steps = nullptr; // null: nothing is kept
 };
 
 } // namespace ovc

@@ -235,6 +235,60 @@ TEST_F(Saved, AStreamedSceneThatFitsIsSavedAsIfItDidNotStream) {
     EXPECT_EQ(std::memcmp(memory.bytes().data(), streamed.saved.bytes().data(), memory.size()), 0);
 }
 
+TEST_F(Saved, AStreamedSceneGoesOnWhereACallEnded) {
+    const Soup soup = test::closed_grid(160);
+    struct Kept : StreamedSoup {
+        using StreamedSoup::StreamedSoup;
+        std::vector<std::string> steps;
+        size_t allowed = ~size_t(0);
+        test::ArchiveMemory before; // what an earlier call wrote
+    };
+    const auto scene_of = [](Kept& of) {
+        ovc_streamed_scene scene = of.scene(kSmallHost);
+        scene.keep_step = [](void* user, const void* bytes, size_t size) {
+            Kept& self = *static_cast<Kept*>(static_cast<StreamedSoup*>(user));
+            if (self.steps.size() == self.allowed)
+                return 1;
+            self.steps.emplace_back(static_cast<const char*>(bytes), size);
+            return 0;
+        };
+        scene.read_written = [](void* user, uint64_t at, void* bytes, size_t size) {
+            const Kept& self = *static_cast<Kept*>(static_cast<StreamedSoup*>(user));
+            std::memcpy(bytes, self.before.bytes().data() + at, size);
+            return 0;
+        };
+        return scene;
+    };
+    Kept whole(soup);
+    const ovc_streamed_scene scene = scene_of(whole);
+    ASSERT_EQ(api().save_streamed(device.get(), nullptr, &scene), OVC_OK);
+    ASSERT_GT(whole.steps.size(), 5u);
+    for (const size_t allowed : {size_t(0), size_t(2), whole.steps.size() - 2}) {
+        Kept ended(soup);
+        ended.allowed = allowed;
+        const ovc_streamed_scene first = scene_of(ended);
+        EXPECT_EQ(api().save_streamed(device.get(), nullptr, &first), OVC_ERROR_CANCELLED);
+        ASSERT_EQ(ended.steps.size(), allowed);
+        ended.before.append(ended.saved.bytes());
+        ended.saved.resize(0);
+        ended.allowed = ~size_t(0);
+        ovc_streamed_scene again = scene_of(ended);
+        std::vector<ovc_kept_step> kept;
+        const std::vector<std::string> steps = ended.steps;
+        for (const std::string& step : steps)
+            kept.push_back({step.data(), step.size()});
+        again.kept = kept.data();
+        again.kept_count = kept.size();
+        ASSERT_EQ(api().save_streamed(device.get(), nullptr, &again), OVC_OK)
+            << api().last_error(device.get());
+        EXPECT_EQ(ended.steps.size(), whole.steps.size());
+        EXPECT_TRUE(std::ranges::equal(ended.saved.bytes(), whole.saved.bytes()));
+        again.host_memory_bytes += 1;
+        EXPECT_EQ(api().save_streamed(device.get(), nullptr, &again),
+                  allowed ? OVC_ERROR_UNREADABLE : OVC_OK);
+    }
+}
+
 TEST_F(Saved, AStreamedSceneTellsWhyItCannotBeSaved) {
     const Soup soup = test::closed_grid(160);
     StreamedSoup streamed(soup);

@@ -222,6 +222,7 @@ Misuses misuse_save_streamed(Subject& s) {
     with("read_corners NULL", [](auto& of, auto&) { of.read_corners = nullptr; });
     with("write NULL", [](auto& of, auto&) { of.write = nullptr; });
     with("reserved", [](auto& of, auto&) { of.reserved = 1; });
+    with("kept NULL", [](auto& of, auto&) { of.kept_count = 1; });
     with("has_doubles", [](auto&, auto& mesh) { mesh.has_doubles = 2; });
     with("a mesh too large", [](auto&, auto& mesh) { mesh.triangle_count = ~uint64_t(0); });
     with("origin NaN", [](auto&, auto& mesh) { mesh.origin[1] = NAN; });

@@ -6,6 +6,9 @@
 #include "core/file/archive.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
+#include <concepts>
 #include <cstring>
 #include <optional>
 #include <string>
@@ -87,6 +90,14 @@ private:
     }
 
     template <class T>
+    static T blank() {
+        if constexpr (std::default_initializable<T>)
+            return T();
+        else
+            return std::bit_cast<T>(std::array<std::byte, sizeof(T)>{});
+    }
+
+    template <class T>
     void take(T& value) {
         if constexpr (std::same_as<T, bool>) {
             uint8_t byte = 0;
@@ -112,7 +123,7 @@ private:
             take(size);
             // Grown item by item, because the size may claim more than there is.
             for (value.clear(); ok_ && size > 0; --size)
-                take(value.emplace_back());
+                take(value.emplace_back(blank<typename T::value_type>()));
         } else if constexpr (requires { each_field(*this, value); }) {
             each_field(*this, value);
         } else {
