@@ -8,6 +8,7 @@
 #include "gpu/gl/fork_mark.h"
 #include "gpu/gl/gl.h"
 #include "gpu/gl/gl_libraries.h"
+#include "gpu/gl/requirements.h"
 #include "gpu/gl/workarounds.h"
 #include "shaders/layout.h"
 
@@ -89,6 +90,28 @@ bool lists(const char* extensions, std::string_view wanted) {
 std::string gl_string(GLenum name) {
     const char* text = reinterpret_cast<const char*>(glGetString(name));
     return text ? text : "";
+}
+
+int gl_integer(GLenum name) {
+    GLint value = 0;
+    glGetIntegerv(name, &value);
+    return value;
+}
+
+/// Returns what a driver offers that has no context of the version needed, for a sentence; nothing
+/// where it has no context at all.
+std::string older_context(EGLDisplay display) {
+    const EGLContext context =
+        eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, nullptr);
+    if (context == EGL_NO_CONTEXT)
+        return {};
+    std::string offer;
+    if (eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context))
+        offer =
+            format_text("; '{}' offers OpenGL {}", gl_string(GL_RENDERER), gl_string(GL_VERSION));
+    eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    eglDestroyContext(display, context);
+    return offer;
 }
 
 uint64_t free_memory() {
@@ -217,7 +240,7 @@ Result<EglContext> EglContext::open(const Platform& platform) {
                                  likely_cause())};
     context.display_ = display;
     const char* extensions = eglQueryString(display, EGL_EXTENSIONS);
-    for (const char* needed : {"EGL_KHR_surfaceless_context", "EGL_KHR_no_config_context"})
+    for (const char* needed : kEglExtensions)
         if (!lists(extensions, needed))
             return Error{
                 format_text("{}: no {}, which headless rendering needs", platform.name, needed)};
@@ -226,9 +249,9 @@ Result<EglContext> EglContext::open(const Platform& platform) {
     const std::array<EGLint, 11> attributes{EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY,
                                             EGL_LOSE_CONTEXT_ON_RESET,
                                             EGL_CONTEXT_MAJOR_VERSION,
-                                            4,
+                                            kGlMajor,
                                             EGL_CONTEXT_MINOR_VERSION,
-                                            5,
+                                            kGlMinor,
                                             EGL_CONTEXT_OPENGL_PROFILE_MASK,
                                             EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
 #ifdef NDEBUG
@@ -247,10 +270,13 @@ Result<EglContext> EglContext::open(const Platform& platform) {
         context.context_ =
             eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes.data() + 2);
     if (context.context_ == EGL_NO_CONTEXT)
-        return Error{format_text("{}: no OpenGL 4.5 core context: {}", platform.name, egl_error())};
+        return Error{format_text("{}: no OpenGL {}.{} core context: {}{}", platform.name, kGlMajor,
+                                 kGlMinor, egl_error(), older_context(display))};
     if (!context.make_current())
         return Error{format_text("{}: eglMakeCurrent failed: {}", platform.name, egl_error())};
     context.info_ = describe();
+    if (Result<Done> met = check_requirements(context.info_.renderer, gl_integer); !met)
+        return Error{format_text("{}: {}", platform.name, met.error().message)};
     if (needs(Workaround::PassedOver)) {
         const WorkaroundEntry& entry = entry_of(Workaround::PassedOver);
         return Error{format_text("{}: '{}' {}; {}", platform.name, context.info_.renderer,

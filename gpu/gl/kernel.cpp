@@ -101,14 +101,6 @@ Result<gl::Program> compile_and_link(std::span<const ExpandedStage> stages) {
     return program;
 }
 
-Result<gl::Program> link(const ShaderConfig& config) {
-    const std::vector<ShaderStage> stages =
-        config.compute ? std::vector<ShaderStage>{{GL_COMPUTE_SHADER, "trace.comp.glsl"}}
-                       : std::vector<ShaderStage>{{GL_VERTEX_SHADER, "fullscreen.vert.glsl"},
-                                                  {GL_FRAGMENT_SHADER, "trace.frag.glsl"}};
-    return link_program(stages, config.defines());
-}
-
 /// Returns the renderer's name as a comment (Workaround::RendererInSources).
 std::string driver_line() {
     if (!needs(Workaround::RendererInSources))
@@ -124,6 +116,12 @@ bool compiles_fragment_shaders() {
 }
 
 } // namespace
+
+std::vector<ShaderStage> stages_of(const ShaderConfig& config) {
+    if (config.compute)
+        return {{GL_COMPUTE_SHADER, "trace.comp.glsl"}};
+    return {{GL_VERTEX_SHADER, "fullscreen.vert.glsl"}, {GL_FRAGMENT_SHADER, "trace.frag.glsl"}};
+}
 
 std::string ShaderConfig::defines() const {
     assert(pool_buffers > 0 && buffer_bits <= OVC_MAX_BUFFER_BITS && stack_depth > 0 && packet > 0);
@@ -212,7 +210,7 @@ Result<GLuint> KernelCache::program(const ShaderConfig& config) {
     for (const Compiled& compiled : programs_)
         if (compiled.config == config)
             return compiled.program.id();
-    Result<gl::Program> program = link(config);
+    Result<gl::Program> program = link_program(stages_of(config), config.defines());
     if (!program)
         return program.error();
     programs_.push_back({config, std::move(*program)});

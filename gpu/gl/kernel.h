@@ -59,6 +59,9 @@ struct ShaderStage {
     std::string_view source; // "trace.frag.glsl"
 };
 
+/// Returns the stages of a kernel.
+std::vector<ShaderStage> stages_of(const ShaderConfig& config);
+
 /// Returns a program of the stages, each expanded with `defines`; from the ProgramStore if it is
 /// kept there. The context must be current. Error: the driver's log.
 Result<gl::Program> link_program(std::span<const ShaderStage> stages, const std::string& defines);
