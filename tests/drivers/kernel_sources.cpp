@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Writes the sources of kernel_variants() as files that other compilers take.
 // usage: kernel_sources FOLDER
-#include "gpu/gl/kernel_variants.h"
+#include "gpu/variants/kernel_variants.h"
 
 #include <cstdio>
 #include <fstream>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gpu/gl/kernel_variants.h"
+#include "gpu/variants/kernel_variants.h"
 
 #include <optional>
 #include <set>

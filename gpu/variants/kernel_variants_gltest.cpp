@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Every two switches meet in a variant, and this machine's driver compiles all variants.
-#include "gpu/gl/kernel_variants.h"
+#include "gpu/variants/kernel_variants.h"
 
 #include "gpu/gl/test_gl.h"
 #include "gpu/gl/workarounds.h"
