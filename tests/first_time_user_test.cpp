@@ -57,8 +57,8 @@ TEST_F(FirstTimeUser, FindsHelpEverywhere) {
 }
 
 TEST_F(FirstTimeUser, ReadsHelpWithoutStrayEscapes) {
-    for (const char* command : {"render", "info", "trace", "convert", "devices", "scenes", "report",
-                                "bench", "diff", "completion", "man"}) {
+    for (const char* command : {"render", "info", "trace", "convert", "devices", "doctor", "scenes",
+                                "report", "bench", "diff", "completion", "man"}) {
         const auto help = bash("$o " + std::string(command) + " --help");
         EXPECT_EQ(help.exit_code, 0) << help.output;
         EXPECT_THAT(help.output, testing::Not(HasSubstr("\\"))) << command;

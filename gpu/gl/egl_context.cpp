@@ -145,6 +145,12 @@ uint32_t max_pool_buffers(bool as_images) {
     return uint32_t(std::clamp(least - OVC_BINDING_POOL, 1, kMaxUnitNumberBuffers));
 }
 
+/// Adds to a sentence that ends without a device where the user learns more.
+Error without_device(Error error) {
+    error.message += "; `overcast doctor` says what is missing";
+    return error;
+}
+
 DeviceInfo describe() {
     DeviceInfo info;
     info.renderer = gl_string(GL_RENDERER);
@@ -288,7 +294,7 @@ Result<EglContext> EglContext::open(const Platform& platform) {
 Result<std::vector<DeviceInfo>> EglContext::list() {
     Result<std::vector<Platform>> found = platforms();
     if (!found)
-        return found.error();
+        return without_device(found.error());
     std::vector<DeviceInfo> infos;
     std::string failures;
     for (const Platform& platform : *found) {
@@ -299,14 +305,14 @@ Result<std::vector<DeviceInfo>> EglContext::list() {
             failures += (failures.empty() ? "" : "; ") + context.error().message;
     }
     if (infos.empty())
-        return Error{"no EGL device works: " + failures};
+        return without_device({"no EGL device works: " + failures});
     return infos;
 }
 
 Result<EglContext> EglContext::create(const std::string& name, const LogSink& log) {
     Result<std::vector<Platform>> found = platforms();
     if (!found)
-        return found.error();
+        return without_device(found.error());
     const bool by_number =
         !name.empty() &&
         std::all_of(name.begin(), name.end(), [](unsigned char c) { return std::isdigit(c); });
@@ -331,7 +337,7 @@ Result<EglContext> EglContext::create(const std::string& name, const LogSink& lo
         working.push_back(std::move(*context));
     }
     if (working.empty())
-        return Error{"no EGL device works: " + failures};
+        return without_device({"no EGL device works: " + failures});
     if (name.empty()) {
         say(log, LogLevel::Info, // not a warning, because answers are the same
             format_text("no GPU found{}; using the software renderer {}",
@@ -343,8 +349,8 @@ Result<EglContext> EglContext::create(const std::string& name, const LogSink& lo
     std::string names;
     for (size_t i = 0; i < working.size(); ++i)
         names += format_text("{}{} '{}'", i ? ", " : "", i, working[i].info().renderer);
-    return Error{format_text("no device is called '{}'; there is {}{}", name, names,
-                             failures.empty() ? "" : "; failed: " + failures)};
+    return without_device({format_text("no device is called '{}'; there is {}{}", name, names,
+                                       failures.empty() ? "" : "; failed: " + failures)});
 }
 
 EglContext::EglContext(EglContext&& other) noexcept

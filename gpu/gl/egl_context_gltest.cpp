@@ -48,7 +48,8 @@ TEST(EglContextGl, ANonsensePlatformSaysWhatWasTried) {
     EXPECT_EQ(context.error().message,
               "EGL cannot start: EGL_PLATFORM is set to 'nonsense', which is no EGL platform; "
               "Overcast tried 'device' "
-              "and 'surfaceless'; unset EGL_PLATFORM or set it to one of these");
+              "and 'surfaceless'; unset EGL_PLATFORM or set it to one of these; "
+              "`overcast doctor` says what is missing");
 }
 
 TEST(EglContextGl, DriversThatEndTheProcessArePassedOver) {

@@ -18,6 +18,7 @@ static constexpr Command kCommands[] = {
     {"trace", "Answer rays from standard input", make_trace},
     {"convert", "Write a scene as .ply or .obj", make_convert},
     {"devices", "List the GPUs and software renderers there are", make_devices},
+    {"doctor", "Say what a device lacks on this machine, and what to do", make_doctor},
     {"scenes", "List the generated test scenes", make_scenes},
     {"report", "Measure what the documents claim", make_report},
     {"bench", "Time rays, certified and fast, beside peers", make_bench},

@@ -38,6 +38,7 @@ std::unique_ptr<Subcommand> make_info();
 std::unique_ptr<Subcommand> make_trace();
 std::unique_ptr<Subcommand> make_convert();
 std::unique_ptr<Subcommand> make_devices();
+std::unique_ptr<Subcommand> make_doctor();
 std::unique_ptr<Subcommand> make_scenes();
 std::unique_ptr<Subcommand> make_report();
 std::unique_ptr<Subcommand> make_bench();
