@@ -215,15 +215,21 @@ struct LargeParts {
     std::function<Result<Done>(const ByteSink&)> write_corners, write_normals;
 };
 
+/// Returns a sink that goes to a part of the file, and wants no more once a write has failed:
+/// building the levels for a full disk would be in vain.
+ByteSink sink_to(ArchiveWriter& writer, const OutputFile& out) {
+    return [&](Bytes bytes) {
+        writer.write(bytes);
+        return !out.has_failed();
+    };
+}
+
 /// Writes everything but the levels.
 Result<Done> write_front(const Scene& scene, const LargeParts& parts, const Provenance& from,
                          const OutputFile& out, ArchiveWriter& writer) {
     ByteWriter fields;
     fields(scene, scene.meshes, from.request, from.files, from.warnings);
-    const ByteSink sink = [&](Bytes bytes) {
-        writer.write(bytes);
-        return !out.has_failed();
-    };
+    const ByteSink sink = sink_to(writer, out);
     writer.part<std::byte>("fields", fields.bytes());
     writer.part<MeshExtent>("extents", parts.extents);
     writer.begin("corners");
@@ -240,13 +246,10 @@ Result<Done> write_front(const Scene& scene, const LargeParts& parts, const Prov
 
 /// Ends the file.
 Result<Done> write_levels(const SaveLevels& save_levels, OutputFile& out, ArchiveWriter& writer) {
-    const ByteSink sink = [&](Bytes bytes) {
-        writer.write(bytes);
-        return !out.has_failed(); // building the levels for a full disk would be in vain
-    };
     if (save_levels) {
         writer.begin("levels");
-        if (const Result<Done> saved = save_levels(sink); !saved && !out.has_failed())
+        if (const Result<Done> saved = save_levels(sink_to(writer, out));
+            !saved && !out.has_failed())
             return saved;
     }
     writer.finish();

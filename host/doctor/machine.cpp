@@ -53,8 +53,9 @@ static std::vector<std::string> files_in(const fs::path& folder, const std::stri
 
 static std::vector<DeviceFile> device_files() {
     std::vector<std::string> paths = files_in("/dev/dri", "renderD");
+    std::error_code failed;
     for (std::string& path : files_in("/dev", "nvidia"))
-        if (!fs::is_directory(path))
+        if (!fs::is_directory(path, failed))
             paths.push_back(std::move(path));
     std::vector<DeviceFile> files;
     for (const std::string& path : paths) {
@@ -78,7 +79,9 @@ Machine look_at_machine() {
             machine.drivers.push_back(std::move(file));
     machine.device_files = device_files();
     machine.has_nvidia_egl = refusal_of("libEGL_nvidia.so.0").empty();
-    machine.in_container = fs::exists("/.dockerenv") || fs::exists("/run/.containerenv") ||
+    std::error_code failed;
+    machine.in_container = fs::exists("/.dockerenv", failed) ||
+                           fs::exists("/run/.containerenv", failed) ||
                            std::getenv("KUBERNETES_SERVICE_HOST");
     if (const char* value = std::getenv("NVIDIA_DRIVER_CAPABILITIES"))
         machine.nvidia_capabilities = value;
