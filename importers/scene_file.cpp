@@ -16,6 +16,7 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <utility>
 
 namespace ovc {
 
@@ -385,10 +386,23 @@ Result<SceneFile> open_scene_file(const std::filesystem::path& path) {
 
 namespace {
 
+/// Returns read(archive) of an unfinished file with these parts.
+template <class Read>
+auto of_unfinished(const std::filesystem::path& path, const std::vector<ArchivePart>& parts,
+                   Read&& read) -> decltype(read(std::declval<const StoredArchive&>())) {
+    const Result<DiskFile> file = DiskFile::open(path);
+    if (!file)
+        return file.error();
+    const auto read_bytes = [&](uint64_t offset, std::span<std::byte> to) {
+        return file->read(offset, to);
+    };
+    auto done = read(StoredArchive::of_parts(read_bytes, parts));
+    if (!done)
+        return Error{fmt::format("{}: the file {}", path.string(), done.error().message)};
+    return done;
+}
+
 Result<SceneFront> read_front(const StoredArchive& archive) {
-    for (const char* name : {"corners", "normals", "uv"})
-        if (const Result<Done> fine = archive.check_part(name); !fine)
-            return fine.error();
     const auto fields = archive.items<std::byte>("fields");
     if (!fields)
         return fields.error();
@@ -412,17 +426,19 @@ Result<SceneFront> read_front(const StoredArchive& archive) {
 } // namespace
 
 Result<SceneFront> open_front(const std::filesystem::path& path, std::vector<ArchivePart> parts) {
-    const Result<DiskFile> file = DiskFile::open(path);
-    if (!file)
-        return file.error();
-    const auto read_bytes = [&](uint64_t offset, std::span<std::byte> to) {
-        return file->read(offset, to);
-    };
-    Result<SceneFront> front = read_front(StoredArchive::of_parts(read_bytes, parts));
-    if (!front)
-        return Error{fmt::format("{}: the file {}", path.string(), front.error().message)};
-    front->parts = std::move(parts);
+    Result<SceneFront> front = of_unfinished(path, parts, read_front);
+    if (front)
+        front->parts = std::move(parts);
     return front;
+}
+
+Result<Done> check_front(const std::filesystem::path& path, const SceneFront& front) {
+    return of_unfinished(path, front.parts, [](const StoredArchive& archive) {
+        for (const char* name : {"corners", "normals", "uv"})
+            if (const Result<Done> fine = archive.check_part(name); !fine)
+                return fine;
+        return Result<Done>(Done{});
+    });
 }
 
 /// Repeats the warnings of the time when the scene was made.

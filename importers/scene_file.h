@@ -61,9 +61,13 @@ struct SceneFront {
 Result<std::vector<ArchivePart>> write_front(const Scene& scene, const TriangleStore& store,
                                              const Provenance& from, OutputFile& out);
 
-/// Reads a front, and checks all of it. Error: it is damaged, or cannot be read. The sentence
+/// Reads what a front says of its meshes. Error: it is damaged, or cannot be read. The sentence
 /// begins with the path.
 Result<SceneFront> open_front(const std::filesystem::path& path, std::vector<ArchivePart> parts);
+
+/// Reads the large parts of a front that an earlier run has written, to check them. Errors are as
+/// above.
+Result<Done> check_front(const std::filesystem::path& path, const SceneFront& front);
 
 /// Returns where a front ends, and the levels begin.
 uint64_t end_of(const SceneFront& front);

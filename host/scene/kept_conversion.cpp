@@ -47,11 +47,20 @@ Result<KeptConversion> KeptConversion::open(const fs::path& output, const SceneA
     return KeptConversion(output, std::move(unfinished), std::move(scratch), std::move(*file));
 }
 
-Result<Done> KeptConversion::take_front() {
+Result<Done> KeptConversion::take(Result<SceneFront> front) {
     const auto begin_anew = [&](const std::string& why) {
         steps_.begin_anew();
         return Error{why};
     };
+    if (!front)
+        return begin_anew(front.error().message);
+    if (const FileStamp* changed = front->from.changed_file())
+        return begin_anew(fmt::format("{} has changed", changed->path));
+    front_ = std::move(*front);
+    return Done{};
+}
+
+Result<Done> KeptConversion::take_front() {
     if (steps_.steps().empty())
         return Error{
             fmt::format("there is no {} of this work to go on with", unfinished_.string())};
@@ -59,12 +68,8 @@ Result<Done> KeptConversion::take_front() {
     std::vector<ArchivePart> parts(step.size() / sizeof(ArchivePart));
     std::memcpy(parts.data(), step.data(), parts.size() * sizeof(ArchivePart));
     Result<SceneFront> front = open_front(unfinished_, std::move(parts));
-    if (!front)
-        return begin_anew(front.error().message);
-    if (const FileStamp* changed = front->from.changed_file())
-        return begin_anew(fmt::format("{} has changed", changed->path));
-    front_ = std::move(*front);
-    return Done{};
+    const Result<Done> fine = front ? check_front(unfinished_, *front) : Done{};
+    return take(fine ? std::move(front) : fine.error());
 }
 
 Result<Done> KeptConversion::write_front(const Scene& scene, const TriangleStore& store,
@@ -77,7 +82,7 @@ Result<Done> KeptConversion::write_front(const Scene& scene, const TriangleStore
         return parts.error();
     if (!steps_.keep(bytes_of(std::span<const ArchivePart>(*parts))))
         return *steps_.error();
-    return take_front();
+    return take(open_front(unfinished_, *parts));
 }
 
 static StreamedTriangles triangles_in(const SceneFront& front, const DiskFile& file) {

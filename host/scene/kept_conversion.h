@@ -46,6 +46,8 @@ private:
           scratch_(std::move(scratch)),
           steps_(std::move(steps)) {}
 
+    Result<Done> take(Result<SceneFront> front);
+
     std::filesystem::path output_;
     std::filesystem::path unfinished_;
     std::filesystem::path scratch_;
