@@ -161,6 +161,13 @@ typedef enum ovc_level1_build {
     OVC_LEVEL1_BUILD_BOTTOM_UP = 1 /* the leaves of a complete tree merged while they are small enough; not for a grid */
 } ovc_level1_build;
 
+/* Experimental: what the ranks of libovercast-mpi.so have. */
+typedef enum ovc_ranks_own {
+    OVC_RANKS_OWN_AUTO = 0,  /* all leaves where they fit into the budgets of each, else a share */
+    OVC_RANKS_OWN_SHARE = 1, /* a share of the leaves; rays go to the ranks that have those on their way */
+    OVC_RANKS_OWN_ALL = 2    /* all leaves; no ray travels */
+} ovc_ranks_own;
+
 /* Takes the next `size` bytes that are saved. Returns 0 to go on, anything else to stop. */
 typedef int (*ovc_write_function)(void* user, const void* bytes, size_t size);
 
@@ -208,6 +215,15 @@ typedef struct ovc_scene_config {
     uint64_t host_memory_bytes;
     ovc_read_function read_saved;
     void* read_user;
+    /* Experimental, of libovercast-mpi.so alone; elsewhere they are 0. There several processes, the
+     * ranks of an MPI communicator, have a scene together: create_scene, commit and destroy_scene
+     * are calls that all ranks make, with the same meshes and the same config; every other call is
+     * a rank's own. See docs/guide/ranks.md. */
+    int32_t communicator; /* as MPI_Comm_c2f tells it. 0: MPI_COMM_WORLD */
+    uint32_t ranks_own;   /* ovc_ranks_own */
+    double rank_timeout;  /* seconds: a rank that gives no word for so long is lost, and calls fail. 0: 60 */
+    const ovc_ray* sample; /* sample_rays of them, such as will be traced, or NULL: leaves are shared out by them. Read during commit */
+    uint64_t sample_rays;
 } ovc_scene_config;
 
 typedef enum ovc_mesh_flags {
@@ -440,6 +456,20 @@ typedef struct ovc_statistics {
     uint64_t disk_misses;
     /* + pages that were read ahead of need */
     uint64_t disk_ahead;
+    /* processes that have the scene together; 0 where it is that of one */
+    uint64_t ranks;
+    /* of this process among them */
+    uint64_t rank;
+    /* + rays of this rank that visited another, counted once for each visit */
+    uint64_t rays_sent;
+    /* + rays of other ranks that visited this one */
+    uint64_t rays_served;
+    /* + bytes that went to other ranks: rays, answers and signs of life */
+    uint64_t bytes_sent;
+    /* + bytes that came from them */
+    uint64_t bytes_received;
+    /* + of `seconds_trace`, those in which this rank had nothing to do but to wait for others */
+    double seconds_waiting;
 } ovc_statistics;
 
 /* The pages that rays went through since this was asked last, or since the commit; experimental. */

@@ -43,6 +43,10 @@ LoopThreads::~LoopThreads() = default;
 
 LoopThreads::Scope::Scope(LoopThreads& threads) : before_(std::exchange(loop_threads, &threads)) {}
 
+LoopThreads* LoopThreads::of_this_thread() {
+    return loop_threads;
+}
+
 LoopThreads::Scope::~Scope() {
     loop_threads = before_;
 }

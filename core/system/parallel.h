@@ -91,6 +91,9 @@ public:
         LoopThreads* before_;
     };
 
+    /// Returns those of the Scope that this thread is in; null outside of any.
+    static LoopThreads* of_this_thread();
+
     struct Arena;
     Arena* arena() { return arena_.get(); }
 

@@ -33,6 +33,12 @@ inline ovc_scene_config checked_config(const ovc_scene_config* given) {
     check_choice("level1_build", config.level1_build, OVC_LEVEL1_BUILD_BOTTOM_UP);
     check_choice("tell_active", config.tell_active, 1);
     check_choice("reserved", config.reserved, 0);
+    check_choice("ranks_own", config.ranks_own, OVC_RANKS_OWN_ALL);
+    if (!(config.rank_timeout >= 0 && config.rank_timeout < 1e9))
+        invalid(format_text("ovc_scene_config.rank_timeout is {}, expected 0 to 1e9 seconds",
+                            config.rank_timeout));
+    if (!config.sample && config.sample_rays)
+        invalid("ovc_scene_config.sample is NULL, but sample_rays is not 0");
     if (!config.saved && config.saved_bytes && !config.read_saved)
         invalid("ovc_scene_config.saved is NULL, but saved_bytes is not 0");
     if (config.host_memory_bytes && (!config.read_saved || config.saved))

@@ -26,6 +26,14 @@ static void leave_room(BuiltScene& scene) {
     scene.top.spare_bytes = (scene.top.tree.units() / 8 + 1 + 4 * more) * OVC_UNIT_BYTES;
 }
 
+/// Drops the pages that are not traced here, and builds the tree as add_tree() does.
+static bool finish_scene(BuiltScene& scene, const TwoLevelOptions& options,
+                         const MemoryPlan& plan) {
+    if (options.choose_pages)
+        keep_pages(scene, options.choose_pages(scene));
+    return add_tree(scene, options, plan);
+}
+
 bool add_tree(BuiltScene& scene, const TwoLevelOptions& options, const MemoryPlan& plan) {
     const size_t pages = scene.pages.size();
     if (pages == 0)
@@ -85,7 +93,7 @@ std::optional<BuiltScene> restored(const Soup& soup, const TwoLevelOptions& opti
             "building anew: what was saved is of other meshes or other options");
     if (*found) {
         set_limits(**found, options, plan);
-        if (!add_tree(**found, options, plan))
+        if (!finish_scene(**found, options, plan))
             return std::nullopt;
     }
     return std::move(*found);
@@ -119,7 +127,7 @@ Result<BuiltScene> built(const Soup& soup, const TwoLevelOptions& options, const
         if (const Result<Done> done = build(scene.shared[i].scene, hittable.shared[i]); !done)
             return done.error();
     gather_pages(scene);
-    if (add_tree(scene, options, plan))
+    if (finish_scene(scene, options, plan))
         return scene;
     build_smallest_levels(scene, std::move(hittable.once), cut.leaf_triangles,
                           /* in_one_frame= */ false, progress);
@@ -127,7 +135,7 @@ Result<BuiltScene> built(const Soup& soup, const TwoLevelOptions& options, const
         build_smallest_levels(scene.shared[i].scene, std::move(hittable.shared[i]),
                               cut.leaf_triangles, /* in_one_frame= */ true, progress);
     gather_pages(scene);
-    if (add_tree(scene, options, plan))
+    if (finish_scene(scene, options, plan))
         return scene;
     // check_budget() has found enough bytes, so the refusal is about a count.
     if (const uint64_t table = scene.top.table_bytes(); table > plan.buffer_bytes)
@@ -150,7 +158,7 @@ static Result<BuiltScene> stored(const Soup& soup, const TwoLevelOptions& option
     if (!scene)
         return scene;
     set_limits(*scene, options, plan);
-    if (!add_tree(*scene, options, plan))
+    if (!finish_scene(*scene, options, plan))
         return over_budget(format_text("the largest page that was saved takes {} bytes, for which "
                                        "the budget of {} bytes of GPU memory has no room",
                                        scene->largest_page_bytes(), plan.budget_bytes));

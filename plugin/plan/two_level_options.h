@@ -7,8 +7,10 @@
 #include "core/soup.h"
 #include "gpu/trace/tracer.h"
 #include "plugin/build/built_scene.h"
+#include "plugin/build/keep_pages.h"
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 
 namespace ovc {
@@ -27,6 +29,9 @@ struct TwoLevelOptions {
     uint64_t buffer_bytes = 0;            // for tests: as in plan_memory()
     LeafStore* store = nullptr;           // reads what was saved, in place of the next
     Bytes saved = {}; // from save() of a structure over the same soup; outlives this one
+    /// Returns which pages of a scene that is cut and packed are traced here; null: all. Others are
+    /// dropped (keep_pages.h).
+    std::function<PagesKept(const BuiltScene&)> choose_pages;
 };
 
 /// Returns the plan for the budget that the options ask for, before portals are taken off. Error:

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The structure of libovercast.so: two-level, and what it counts in the words of the ABI.
+// Two-level behind the ABI: its options from a config, and what it counts in the words of the ABI.
+#include "plugin/two_level/make_two_level.h"
+
 #include "core/text/format_text.h"
 #include "plugin/out_of_core/streamed_build.h"
 #include "plugin/plan/forecast.h"
@@ -9,7 +11,7 @@
 
 namespace ovc {
 
-void check_config(const ovc_scene_config& config, const DeviceInfo& device) {
+void check_two_level(const ovc_scene_config& config, const DeviceInfo& device) {
     if (config.structure != OVC_STRUCTURE_TWO_LEVEL)
         throw Failure{
             OVC_ERROR_INVALID_ARGUMENT,
@@ -30,45 +32,18 @@ void check_config(const ovc_scene_config& config, const DeviceInfo& device) {
             throw Failure{OVC_ERROR_OUT_OF_BUDGET, plan.error().message};
 }
 
-static TwoLevelOptions options_of(const ovc_scene_config& config) {
+TwoLevelOptions two_level_options(const ovc_scene_config& config) {
     return {config.gpu_memory_bytes,
             config.leaf_triangles,
             config.leaves,
             config.precision != OVC_PRECISION_FAST,
             config.kernel != OVC_KERNEL_FRAGMENT,
-            config.tell_active == 1};
-}
-
-static Bytes saved_in(const ovc_scene_config& config) {
-    return {static_cast<const std::byte*>(config.saved), size_t(config.saved_bytes)};
-}
-
-Result<std::unique_ptr<Structure>> make_structure(const Soup& soup, GlThread& gl,
-                                                  const ovc_scene_config& config,
-                                                  const LogSink& log, BuildProgress* progress,
-                                                  LeafStore* store) {
-    TwoLevelOptions options = options_of(config);
-    options.store = store;
-    options.saved = saved_in(config);
-    Result<std::unique_ptr<TwoLevel>> built = TwoLevel::build(soup, gl, options, log, progress);
-    if (!built)
-        return built.error();
-    return std::unique_ptr<Structure>(std::move(*built));
-}
-
-Result<ovc_plan> plan_structure(const Soup& soup, const DeviceInfo& device,
-                                const ovc_scene_config& config, BuildProgress* progress) {
-    return forecast(soup, options_of(config), device, progress);
-}
-
-Result<Done> save_structure(const StreamedScene& scene, const DeviceInfo& device,
-                            const ovc_scene_config& config, const ByteSink& sink,
-                            const LogSink& log, BuildProgress* progress) {
-    const Result<StreamedLevels> saved =
-        save_streamed(scene, options_of(config), device, sink, log, progress);
-    if (!saved)
-        return saved.error();
-    return Done{};
+            config.tell_active == 1,
+            {},
+            ~uint64_t(0),
+            0,
+            nullptr,
+            {static_cast<const std::byte*>(config.saved), size_t(config.saved_bytes)}};
 }
 
 ovc_statistics TwoLevel::report() const {

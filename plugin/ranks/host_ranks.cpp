@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+// The table of overcast_ranks.h.
+#include "plugin/overcast_ranks.h"
+
+#include "plugin/ranks/mpi_post.h"
+#include "plugin/ranks/notes.h"
+
+#include <cstdlib>
+#include <memory>
+#include <string>
+
+namespace ovc {
+namespace {
+
+struct HostRanks {
+    std::unique_ptr<Post> post;
+    std::unique_ptr<Notes> notes;
+    std::vector<std::string> names;
+    std::string error;
+    ovc_ranks table{};
+};
+
+HostRanks& host_ranks() {
+    static HostRanks* const all = new HostRanks; // closed at exit, but never gone
+    return *all;
+}
+
+std::function<bool()> waits(ovc_wait_function wait, void* user) {
+    return [=] { return !wait || wait(user) == 0; };
+}
+
+std::span<const std::byte> span_of(const void* bytes, size_t size) {
+    return {static_cast<const std::byte*>(bytes), size};
+}
+
+ovc_result failed(const Error& error) {
+    host_ranks().error = error.message;
+    return error.kind == ErrorKind::Cancelled ? OVC_ERROR_CANCELLED : OVC_ERROR_INTERNAL;
+}
+
+ovc_result gather(const void* bytes, size_t size, ovc_take_function take, ovc_wait_function wait,
+                  void* user) {
+    const auto all = host_ranks().notes->gather(span_of(bytes, size), waits(wait, user));
+    if (!all)
+        return failed(all.error());
+    for (uint32_t rank = 0; rank < all->size(); ++rank)
+        take(user, rank, (*all)[rank].data(), (*all)[rank].size());
+    return OVC_OK;
+}
+
+ovc_result spread(const void* bytes, size_t size, ovc_take_function take, ovc_wait_function wait,
+                  void* user) {
+    const auto first = host_ranks().notes->spread(span_of(bytes, size), waits(wait, user));
+    if (!first)
+        return failed(first.error());
+    take(user, 0, first->data(), first->size());
+    return OVC_OK;
+}
+
+bool open(double timeout_seconds) {
+    HostRanks& all = host_ranks();
+    Result<std::unique_ptr<Post>> post = make_mpi_post({0, timeout_seconds});
+    if (!post)
+        return false;
+    all.post = std::move(*post);
+    all.notes = std::make_unique<Notes>(*all.post);
+    for (uint32_t rank = 0; rank < all.post->ranks(); ++rank)
+        all.names.push_back(all.post->name_of(rank));
+    std::atexit([] { host_ranks().post.reset(); }); // before MPI is ended
+    all.table = {sizeof(ovc_ranks),
+                 all.post->rank(),
+                 all.post->ranks(),
+                 [](uint32_t rank) { return host_ranks().names.at(rank).c_str(); },
+                 [] { return host_ranks().error.c_str(); },
+                 gather,
+                 spread,
+                 [](int code) { abort_all_ranks(code); }};
+    return true;
+}
+
+} // namespace
+} // namespace ovc
+
+extern "C" const ovc_ranks* ovc_get_ranks(double timeout_seconds) {
+    ovc_ranks& table = ovc::host_ranks().table;
+    return table.struct_size || ovc::open(timeout_seconds) ? &table : nullptr;
+}

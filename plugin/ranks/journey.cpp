@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+// Sends rays to their next stop, and takes their answers, until all are done.
+#include "plugin/ranks/journey.h"
+
+#include "core/exact/triangle.h"
+#include "core/system/parallel.h"
+#include "core/system/stopwatch.h"
+#include "core/text/format_text.h"
+
+#include <algorithm>
+#include <cassert>
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+namespace ovc {
+
+/// A parcel has so many visits at most: enough that its cost is that of its bytes, and so few that
+/// the rank that gets it begins soon.
+static constexpr size_t kMaxParcel = size_t(1) << 14;
+
+/// How many rays of a rank are at another one at once. All ranks may send theirs to the same one,
+/// whose memory for them this bounds: about 24 MiB, or 400 KiB a rank where there are many.
+static size_t max_away(uint32_t ranks) {
+    return std::clamp<size_t>((size_t(1) << 18) / ranks, size_t(1) << 12, size_t(1) << 16);
+}
+
+Journey::Journey(const Itinerary& ranks, const JourneyRays& rays, uint32_t call, CallWatch& watch)
+    : ranks_(ranks), rays_(rays), call_(call), watch_(watch), ways_(ranks.post.ranks()) {
+    assert(rays.rays.size() <= JourneyRays::kMaxRays);
+    assert(rays.hits.empty() || rays.occluded.empty());
+}
+
+Result<Done> Journey::run() {
+    const size_t count = rays_.rays.size();
+    std::ranges::fill(rays_.hits, Hit());
+    std::ranges::fill(rays_.occluded, uint8_t(0));
+    find_stops();
+    for (size_t ray = 0; ray < count; ++ray)
+        done_ += !go_on(uint32_t(ray));
+    send_off();
+    while (done_ < count) {
+        if (const Result<Done> done = wait(); !done)
+            return done;
+        send_off();
+    }
+    return Done{};
+}
+
+/// Sets the stops of all rays. Invalid rays go to this rank, which knows what to answer.
+void Journey::find_stops() {
+    constexpr size_t kBlock = 4096;
+    const size_t count = rays_.rays.size(), blocks = (count + kBlock - 1) / kBlock;
+    next_.resize(count);
+    end_.resize(count);
+    std::vector<std::vector<Stop>> found(blocks);
+    parallel_for(blocks, 1, [&](size_t first, size_t last) {
+        std::vector<Stop> stops;
+        for (size_t i = first * kBlock; i < std::min(count, last * kBlock); ++i) {
+            const Ray ray = rays_.rays[i];
+            stops.assign(1, {-std::numeric_limits<double>::infinity(), ranks_.post.rank()});
+            if (ray.valid())
+                ranks_.finder.find(ray, stops);
+            std::vector<Stop>& all = found[i / kBlock];
+            next_[i] = uint32_t(all.size());
+            all.insert(all.end(), stops.begin(), stops.end());
+            end_[i] = uint32_t(all.size());
+        }
+    });
+    for (size_t block = 0; block < blocks; ++block) {
+        const auto before = uint32_t(stops_.size());
+        stops_.insert(stops_.end(), found[block].begin(), found[block].end());
+        for (size_t i = block * kBlock; i < std::min(count, (block + 1) * kBlock); ++i)
+            next_[i] += before, end_[i] += before;
+    }
+}
+
+/// Lets the ray wait for its next visit. Returns false where it needs none.
+bool Journey::go_on(uint32_t ray) {
+    if (next_[ray] == end_[ray] || (is_any() && rays_.occluded[ray]))
+        return false;
+    const Stop& stop = stops_[next_[ray]];
+    if (!is_any() && stop.t > rays_.hits[ray].t)
+        return false;
+    ++next_[ray];
+    ways_[stop.rank].waiting.push_back(ray);
+    return true;
+}
+
+void Journey::send_off() {
+    for (uint32_t to = 0; to < ranks_.post.ranks(); ++to) {
+        const size_t max = to == ranks_.post.rank() ? JourneyRays::kMaxRays : max_away(ranks_.post.ranks());
+        while (!ways_[to].waiting.empty() && ways_[to].away < max)
+            send_some(to, ways_[to]);
+    }
+}
+
+void Journey::send_some(uint32_t to, Way& way) {
+    const size_t count = std::min(way.waiting.size(), kMaxParcel);
+    std::vector<Visit> visits(count);
+    parallel_for(count, 2048, [&](size_t first, size_t last) {
+        for (size_t i = first; i < last; ++i)
+            visits[i] = visit_of(way.waiting[i]);
+    });
+    way.waiting.erase(way.waiting.begin(), way.waiting.begin() + ptrdiff_t(count));
+    way.away += count;
+    visits_elsewhere_ += to == ranks_.post.rank() ? 0 : count;
+    ranks_.post.send(to, Parcel(is_any() ? ParcelKind::AnyVisits : ParcelKind::NearestVisits, call_,
+                           std::span<const Visit>(visits)));
+}
+
+Visit Journey::visit_of(uint32_t ray) const {
+    const Exclusion without = rays_.without[ray];
+    Visit visit{rays_.rays[ray],  without.skip, without.after.id, without.after.t,
+                rays_.without.sieves[ray].mask, ray};
+    // A nearer hit may have a t that rounds to the same double, from a little above it.
+    if (!is_any())
+        visit.ray.t_max =
+            std::min(visit.ray.t_max,
+                     std::nextafter(rays_.hits[ray].t, std::numeric_limits<double>::infinity()));
+    return visit;
+}
+
+Result<Done> Journey::wait() {
+    const bool was_idle = is_idle_();
+    const Stopwatch watch;
+    const std::vector<Inbox::Letter> letters =
+        ranks_.post.answers.take(std::chrono::milliseconds(50));
+    if (was_idle && is_idle_())
+        seconds_waiting_ += watch.seconds();
+    for (const Inbox::Letter& letter : letters)
+        if (letter.parcel.call() == call_)
+            if (const Result<Done> done = take(letter); !done)
+                return done;
+    if (const std::optional<Error> lost = ranks_.post.lost())
+        return *lost;
+    return watch_.go_on(done_, rays_.rays.size());
+}
+
+Result<Done> Journey::take(const Inbox::Letter& letter) {
+    const Parcel& parcel = letter.parcel;
+    if (parcel.kind() == ParcelKind::Failure) {
+        const auto told = parcel.items<char>();
+        return Error{format_text("{}: {}", ranks_.post.name_of(letter.from),
+                                 std::string(told.begin() + 1, told.end())),
+                     ErrorKind(told.front())};
+    }
+    const auto came_back = [&](uint32_t ray) {
+        --ways_[letter.from].away;
+        done_ += !go_on(ray);
+    };
+    if (parcel.kind() == ParcelKind::Occlusions)
+        for (const OcclusionThere& there : parcel.items<OcclusionThere>()) {
+            rays_.occluded[there.slot] = there.occluded != 0;
+            came_back(there.slot);
+        }
+    else
+        for (const HitThere& there : parcel.items<HitThere>()) {
+            take_hit(there);
+            came_back(there.slot);
+        }
+    return Done{};
+}
+
+void Journey::take_hit(const HitThere& there) {
+    if (there.hit.is_hit() && is_nearer(there.slot, there.hit))
+        rays_.hits[there.slot] = there.hit;
+}
+
+/// Whether the hit comes before the ray's nearest so far, in the order of exact t, mesh and prim.
+bool Journey::is_nearer(uint32_t ray, const Hit& hit) const {
+    const Hit& best = rays_.hits[ray];
+    if (!best.is_hit() || hit.t != best.t || hit.id == best.id || !ranks_.certified)
+        return hit.nearer_than(best);
+    // Rounded, they are equal; the corners tell which comes first.
+    const PreparedRay p(rays_.rays[ray]);
+    Nearest nearest(p);
+    nearest.offer(ranks_.soup.triangle(best.id), best.id);
+    nearest.offer(ranks_.soup.triangle(hit.id), hit.id);
+    return nearest.best().found.hit.id == hit.id;
+}
+
+} // namespace ovc

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+// Journey: a call's rays on their way from rank to rank. A ray visits the ranks whose pages it
+// comes by, the nearest first, and after each visit its answer comes home: here. It goes on as long
+// as another rank may have a nearer hit.
+#pragma once
+
+#include "core/exclusions.h"
+#include "core/ray_span.h"
+#include "plugin/ranks/post.h"
+#include "plugin/ranks/stops.h"
+#include "plugin/structure/call_watch.h"
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <span>
+#include <vector>
+
+namespace ovc {
+
+/// What journeys of a scene have in common.
+struct Itinerary {
+    const Soup& soup; // whose corners decide between hits of equal t
+    bool certified;
+    const StopFinder& finder;
+    Post& post;
+};
+
+/// The rays of a call, at most kMaxRays, and where their answers go: one of the last two is empty.
+struct JourneyRays {
+    static constexpr size_t kMaxRays = size_t(1) << 20;
+
+    RaySpan rays;
+    const Exclusions& without; // without filters
+    std::span<Hit> hits;
+    std::span<uint8_t> occluded;
+};
+
+class Journey {
+public:
+    /// call: a number that no other journey of this rank had of late.
+    Journey(const Itinerary& ranks, const JourneyRays& rays, uint32_t call, CallWatch& watch);
+
+    /// Answers all rays. Error: the call is cancelled, a rank is lost, or one cannot trace.
+    Result<Done> run();
+
+    uint64_t visits_elsewhere() const { return visits_elsewhere_; }
+    /// Returns how long there was nothing to do but to wait for other ranks. is_idle(): whether
+    /// this rank traces nothing just now.
+    double seconds_waiting() const { return seconds_waiting_; }
+    void watch_idle(std::function<bool()> is_idle) { is_idle_ = std::move(is_idle); }
+
+private:
+    /// What waits to go to a rank, and what is there.
+    struct Way {
+        std::deque<uint32_t> waiting; // rays
+        size_t away = 0;
+    };
+
+    bool is_any() const { return rays_.hits.empty(); }
+    void find_stops();
+    bool go_on(uint32_t ray);
+    void send_off();
+    void send_some(uint32_t to, Way& way);
+    Visit visit_of(uint32_t ray) const;
+    Result<Done> take(const Inbox::Letter& letter);
+    void take_hit(const HitThere& there);
+    bool is_nearer(uint32_t ray, const Hit& hit) const;
+    Result<Done> wait();
+
+    const Itinerary& ranks_;
+    const JourneyRays& rays_;
+    const uint32_t call_;
+    CallWatch& watch_;
+    std::function<bool()> is_idle_ = [] { return false; };
+    std::vector<Stop> stops_;        // of all rays
+    std::vector<uint32_t> next_;     // of each ray, into stops_
+    std::vector<uint32_t> end_;      // likewise
+    std::vector<Way> ways_;          // to each rank
+    size_t done_ = 0;
+    uint64_t visits_elsewhere_ = 0;
+    double seconds_waiting_ = 0;
+};
+
+} // namespace ovc

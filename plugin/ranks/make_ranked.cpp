@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+// The structure of libovercast-mpi.so: two-level, whose pages are shared out between ranks where
+// they do not fit, or where the config says so.
+#include "core/text/format_text.h"
+#include "plugin/plan/forecast.h"
+#include "plugin/ranks/mpi_post.h"
+#include "plugin/ranks/notes.h"
+#include "plugin/ranks/ranked_scene.h"
+#include "plugin/ranks/sharing.h"
+#include "plugin/structure/failure.h"
+#include "plugin/two_level/make_two_level.h"
+#include "plugin/two_level/two_level.h"
+
+namespace ovc {
+
+/// Leaves for each rank, at least, where the host does not say: so many that shares can be equal.
+static constexpr uint64_t kLeavesPerRank = 8;
+
+namespace {
+
+/// Builds what is traced on this rank. An exception becomes an error, which the others learn of.
+Result<std::unique_ptr<TwoLevel>> built_here(const Soup& soup, GlThread& gl,
+                                             const TwoLevelOptions& options, const LogSink& log,
+                                             BuildProgress* progress) {
+    try {
+        return TwoLevel::build(soup, gl, options, log, progress);
+    } catch (const Cancelled&) {
+        return Error{"commit was cancelled", ErrorKind::Cancelled};
+    } catch (const std::bad_alloc&) {
+        return Error{"not enough host memory", ErrorKind::OutOfMemory};
+    } catch (const std::exception& error) {
+        return Error{error.what()};
+    }
+}
+
+} // namespace
+
+void check_config(const ovc_scene_config& config, const DeviceInfo& device) {
+    check_two_level(config, device);
+}
+
+Result<std::unique_ptr<Structure>> make_structure(const Soup& soup, GlThread& gl,
+                                                  const ovc_scene_config& config,
+                                                  const LogSink& log, BuildProgress* progress,
+                                                  LeafStore* store) {
+    Result<std::unique_ptr<Post>> post =
+        make_mpi_post({config.communicator, config.rank_timeout});
+    if (!post)
+        return post.error();
+    TwoLevelOptions options = two_level_options(config);
+    options.store = store;
+    SharingOptions share{.rank = (*post)->rank(),
+                         .always = config.ranks_own == OVC_RANKS_OWN_SHARE,
+                         .host_bytes = config.host_memory_bytes};
+    share.gpu_bytes =
+        config.gpu_memory_bytes ? config.gpu_memory_bytes : gl.info().default_budget_bytes();
+    share.shares.ranks = (*post)->ranks();
+    share.shares.sample = {reinterpret_cast<const Ray*>(config.sample), size_t(config.sample_rays)};
+    Sharing sharing(share, log);
+    if ((*post)->ranks() > 1 && config.ranks_own != OVC_RANKS_OWN_ALL) {
+        options.choose_pages = [&](const BuiltScene& scene) { return sharing.choose(scene); };
+        if (options.saved.empty() && !store && !options.leaf_triangles && !options.leaves)
+            options.leaves = kLeavesPerRank * (*post)->ranks();
+    }
+    Result<std::unique_ptr<TwoLevel>> local = built_here(soup, gl, options, log, progress);
+    Notes notes(**post);
+    if (const Result<Done> all = first_error(
+            notes, **post, local ? Result<Done>(Done{}) : Result<Done>(local.error()));
+        !all)
+        return all.error();
+    if (!sharing.shares())
+        return std::unique_ptr<Structure>(std::move(*local));
+    return std::unique_ptr<Structure>(std::make_unique<RankedScene>(
+        soup, RankedParts{std::move(*post), std::move(*local), sharing.take_finder(),
+                          config.precision != OVC_PRECISION_FAST, LoopThreads::of_this_thread()}));
+}
+
+Result<ovc_plan> plan_structure(const Soup& soup, const DeviceInfo& device,
+                                const ovc_scene_config& config, BuildProgress* progress) {
+    return forecast(soup, two_level_options(config), device, progress);
+}
+
+Result<Done> save_structure(const StreamedScene&, const DeviceInfo&, const ovc_scene_config&,
+                            const ByteSink&, const LogSink&, BuildProgress*) {
+    throw Failure{OVC_ERROR_INVALID_ARGUMENT,
+                  "save_streamed: one process builds what is saved; libovercast.so does it"};
+}
+
+} // namespace ovc

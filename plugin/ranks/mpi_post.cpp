@@ -1,0 +1,297 @@
+// SPDX-License-Identifier: Apache-2.0
+// One thread a post does all that MPI is needed for: it sends, receives, and listens for signs of
+// life. Ranks watch each other in a ring, so that a thousand of them send no more than two.
+#include "plugin/ranks/mpi_post.h"
+
+#include "core/text/format_text.h"
+
+#include <mpi.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cassert>
+#include <cstdlib>
+#include <list>
+#include <thread>
+
+namespace ovc {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr double kDefaultTimeout = 60;
+constexpr int kParcelTag = 1, kLifeTag = 2, kLostTag = 3;
+
+/// Starts MPI where the host has not, and then ends it with the process.
+Result<Done> start_mpi() {
+    int started = 0, ended = 0;
+    MPI_Initialized(&started);
+    MPI_Finalized(&ended);
+    if (ended)
+        return Error{"MPI has ended in this process"};
+    int threads = MPI_THREAD_SINGLE;
+    if (started) {
+        MPI_Query_thread(&threads);
+    } else {
+        if (MPI_Init_thread(nullptr, nullptr, MPI_THREAD_MULTIPLE, &threads) != MPI_SUCCESS)
+            return Error{"MPI cannot be started"};
+        std::atexit([] {
+            int over = 0;
+            MPI_Finalized(&over);
+            if (!over)
+                MPI_Finalize();
+        });
+    }
+    if (threads < MPI_THREAD_MULTIPLE)
+        return Error{"MPI was started for fewer threads than are needed: call MPI_Init_thread with "
+                     "MPI_THREAD_MULTIPLE",
+                     ErrorKind::InvalidArgument};
+    return Done{};
+}
+
+class MpiPost final : public Post {
+public:
+    /// comm: of this post alone.
+    MpiPost(MPI_Comm comm, double timeout_seconds)
+        : comm_(comm),
+          timeout_(std::chrono::duration_cast<Clock::duration>(
+              std::chrono::duration<double>(timeout_seconds))) {
+        int rank = 0, ranks = 0;
+        MPI_Comm_rank(comm_, &rank);
+        MPI_Comm_size(comm_, &ranks);
+        rank_ = uint32_t(rank);
+        ranks_ = uint32_t(ranks);
+        gather_hosts();
+        thread_ = std::thread([this] { run(); });
+    }
+    ~MpiPost() override {
+        close();
+        // With a rank gone, a call that all ranks make would not return.
+        if (!lost())
+            MPI_Comm_free(&comm_);
+    }
+
+    uint32_t rank() const override { return rank_; }
+    uint32_t ranks() const override { return ranks_; }
+    std::string name_of(uint32_t rank) const override {
+        return format_text("rank {} on {}", rank, hosts_[rank]);
+    }
+
+    std::optional<Error> lost() const override {
+        const std::lock_guard lock(mutex_);
+        if (lost_ == kNone)
+            return std::nullopt;
+        return Error{format_text("{} has given no word for {} s; the job cannot go on without it",
+                                 name_of(lost_),
+                                 std::chrono::duration<double>(timeout_).count())};
+    }
+    void close() override {
+        if (!thread_.joinable())
+            return;
+        closing_ = true;
+        wake();
+        thread_.join();
+    }
+    PostCounts counts() const override { return {sent_, received_}; }
+
+protected:
+    void send_away(uint32_t to, Parcel parcel) override {
+        {
+            const std::lock_guard lock(mutex_);
+            outgoing_.push_back({to, std::move(parcel)});
+        }
+        wake();
+    }
+
+private:
+    struct Sending {
+        MPI_Request request = MPI_REQUEST_NULL;
+        Parcel parcel;
+    };
+
+    void gather_hosts() {
+        char name[MPI_MAX_PROCESSOR_NAME] = {};
+        int length = 0;
+        MPI_Get_processor_name(name, &length);
+        std::vector<char> all(size_t(ranks_) * MPI_MAX_PROCESSOR_NAME);
+        MPI_Allgather(name, MPI_MAX_PROCESSOR_NAME, MPI_CHAR, all.data(), MPI_MAX_PROCESSOR_NAME,
+                      MPI_CHAR, comm_);
+        for (uint32_t rank = 0; rank < ranks_; ++rank)
+            hosts_.push_back(&all[size_t(rank) * MPI_MAX_PROCESSOR_NAME]);
+    }
+
+    void wake() {
+        const std::lock_guard lock(mutex_);
+        woken_ = true;
+        changed_.notify_one();
+    }
+
+    /// Works until all ranks have closed their posts, or one is lost.
+    void run() {
+        heard_ = Clock::now();
+        MPI_Request all_closed = MPI_REQUEST_NULL;
+        bool is_closing = false;
+        std::chrono::microseconds nap(20);
+        while (true) {
+            const bool was_busy = send_what_waits() | receive_all() | forget_sent();
+            give_sign_of_life();
+            watch_neighbour();
+            // No parcel of this rank is under way any more, for all answers have come home.
+            if (closing_ && !is_closing && sending_.empty()) {
+                MPI_Ibarrier(comm_, &all_closed);
+                is_closing = true;
+            }
+            if (is_closing || closing_) {
+                int over = 0;
+                if (is_closing)
+                    MPI_Test(&all_closed, &over, MPI_STATUS_IGNORE);
+                if (over || lost_is_told())
+                    return;
+            }
+            nap = was_busy ? std::chrono::microseconds(20)
+                           : std::min(nap * 2, std::chrono::microseconds(2000));
+            std::unique_lock lock(mutex_);
+            changed_.wait_for(lock, nap, [&] { return woken_; });
+            woken_ = false;
+        }
+    }
+
+    bool send_what_waits() {
+        std::vector<std::pair<uint32_t, Parcel>> letters;
+        {
+            const std::lock_guard lock(mutex_);
+            letters.swap(outgoing_);
+        }
+        for (auto& [to, parcel] : letters) {
+            Sending& sending = sending_.emplace_back();
+            sending.parcel = std::move(parcel);
+            const auto bytes = sending.parcel.bytes();
+            MPI_Isend(bytes.data(), int(bytes.size()), MPI_BYTE, int(to), kParcelTag, comm_,
+                      &sending.request);
+            sent_ += bytes.size();
+        }
+        return !letters.empty();
+    }
+
+    bool forget_sent() {
+        return sending_.remove_if([](Sending& sending) {
+                   int over = 0;
+                   MPI_Test(&sending.request, &over, MPI_STATUS_IGNORE);
+                   return over != 0;
+               }) > 0;
+    }
+
+    bool receive_all() {
+        bool any = false;
+        while (true) {
+            int is_there = 0;
+            MPI_Message message;
+            MPI_Status status;
+            MPI_Improbe(MPI_ANY_SOURCE, MPI_ANY_TAG, comm_, &is_there, &message, &status);
+            if (!is_there)
+                return any;
+            int size = 0;
+            MPI_Get_count(&status, MPI_BYTE, &size);
+            std::vector<std::byte> bytes{size_t(size)};
+            MPI_Mrecv(bytes.data(), size, MPI_BYTE, &message, MPI_STATUS_IGNORE);
+            received_ += bytes.size();
+            const auto from = uint32_t(status.MPI_SOURCE);
+            if (from == before())
+                heard_ = Clock::now();
+            if (status.MPI_TAG == kParcelTag) {
+                deliver(from, Parcel(std::move(bytes)));
+                any = true;
+            } else if (status.MPI_TAG == kLostTag) {
+                lose(*reinterpret_cast<const uint32_t*>(bytes.data()));
+            }
+        }
+    }
+
+    uint32_t before() const { return (rank_ + ranks_ - 1) % ranks_; }
+    uint32_t behind() const { return (rank_ + 1) % ranks_; }
+
+    void give_sign_of_life() {
+        const auto now = Clock::now();
+        if (ranks_ == 1 || now < next_sign_)
+            return;
+        next_sign_ = now + std::min<Clock::duration>(timeout_ / 4, std::chrono::seconds(1));
+        send_word(behind(), kLifeTag, rank_);
+    }
+
+    void watch_neighbour() {
+        const auto now = Clock::now();
+        // A process that was stopped itself has heard nothing of anybody.
+        const bool was_away = now - looked_ > timeout_ / 2;
+        looked_ = now;
+        if (was_away)
+            heard_ = now;
+        if (ranks_ == 1 || now - heard_ <= timeout_ || lost_is_told())
+            return;
+        for (uint32_t rank = 0; rank < ranks_; ++rank)
+            if (rank != rank_ && rank != before())
+                send_word(rank, kLostTag, before());
+        lose(before());
+    }
+
+    void send_word(uint32_t to, int tag, uint32_t word) {
+        Sending& sending = sending_.emplace_back();
+        sending.parcel = Parcel(ParcelKind::Note, 0, std::span<const uint32_t>());
+        // The word lies in the parcel's head, whose call it is.
+        sending.parcel = Parcel(ParcelKind::Note, word, std::span<const uint32_t>());
+        const auto bytes = sending.parcel.bytes().subspan(sizeof(uint32_t));
+        MPI_Isend(bytes.data(), int(bytes.size()), MPI_BYTE, int(to), tag, comm_,
+                  &sending.request);
+        sent_ += bytes.size();
+    }
+
+    void lose(uint32_t rank) {
+        const std::lock_guard lock(mutex_);
+        if (lost_ == kNone)
+            lost_ = rank;
+    }
+    bool lost_is_told() const {
+        const std::lock_guard lock(mutex_);
+        return lost_ != kNone;
+    }
+
+    MPI_Comm comm_;
+    const Clock::duration timeout_;
+    uint32_t rank_ = 0, ranks_ = 1;
+    std::vector<std::string> hosts_;
+    std::atomic<bool> closing_{false};
+    std::atomic<uint64_t> sent_{0}, received_{0};
+    mutable std::mutex mutex_; // guards the next four
+    std::condition_variable changed_;
+    std::vector<std::pair<uint32_t, Parcel>> outgoing_;
+    uint32_t lost_ = kNone;
+    bool woken_ = false;
+    // of the thread
+    std::list<Sending> sending_;
+    Clock::time_point heard_, looked_ = Clock::now(), next_sign_{};
+    std::thread thread_;
+};
+
+} // namespace
+
+Result<std::unique_ptr<Post>> make_mpi_post(const MpiPostOptions& options) {
+    if (const Result<Done> started = start_mpi(); !started)
+        return started.error();
+    const MPI_Comm given =
+        options.communicator ? MPI_Comm_f2c(options.communicator) : MPI_COMM_WORLD;
+    if (given == MPI_COMM_NULL)
+        return Error{format_text("ovc_scene_config.communicator is {}, which is no communicator",
+                                 options.communicator),
+                     ErrorKind::InvalidArgument};
+    MPI_Comm own;
+    if (MPI_Comm_dup(given, &own) != MPI_SUCCESS)
+        return Error{"MPI cannot make a communicator"};
+    const double timeout = options.timeout_seconds > 0 ? options.timeout_seconds : kDefaultTimeout;
+    return std::unique_ptr<Post>(std::make_unique<MpiPost>(own, timeout));
+}
+
+void abort_all_ranks(int code) {
+    MPI_Abort(MPI_COMM_WORLD, code);
+    std::abort(); // MPI_Abort() does not return
+}
+
+} // namespace ovc

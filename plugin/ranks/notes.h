@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// Notes: bytes that all ranks exchange at the same point of their program.
+#pragma once
+
+#include "plugin/ranks/post.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+namespace ovc {
+
+class Notes {
+public:
+    /// The post's notes come here alone.
+    explicit Notes(Post& post) : post_(post) {}
+
+    /// Sends the bytes of this rank to rank 0, which returns those of all ranks, in their order.
+    /// All ranks call it. The others return at once, with nothing. goes_on(): asked some twenty
+    /// times a second; where it returns false, rank 0 gives up with an Error of the kind Cancelled.
+    /// Error: a rank is lost.
+    Result<std::vector<std::vector<std::byte>>>
+    gather(std::span<const std::byte> mine, const std::function<bool()>& goes_on);
+    /// Returns, on all ranks, the bytes that rank 0 passes. All ranks call it.
+    Result<std::vector<std::byte>> spread(std::span<const std::byte> of_first,
+                                          const std::function<bool()>& goes_on);
+
+private:
+    Result<std::vector<std::byte>> next_from(uint32_t rank, const std::function<bool()>& goes_on);
+
+    Post& post_;
+    std::vector<Inbox::Letter> early_; // that nobody has waited for yet
+};
+
+/// Returns the first error among those of all ranks, which all call this; its sentence names the
+/// rank where that is another. It is `mine` where no rank has one.
+Result<Done> first_error(Notes& notes, Post& post, const Result<Done>& mine);
+
+} // namespace ovc

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+// Parcels: what ranks send each other. They go as bytes between processes of one program on
+// machines of one kind.
+#pragma once
+
+#include "core/exclusions.h"
+#include "core/ray.h"
+
+#include <cassert>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <type_traits>
+#include <vector>
+
+namespace ovc {
+
+/// A ray on its way to a rank that has pages for it.
+struct Visit {
+    Ray ray; // t_max: that of the nearest hit so far, or a little more
+    TriangleId skip;
+    TriangleId after; // with after_t, as in Exclusion::after
+    double after_t;
+    uint32_t mask;
+    uint32_t slot; // the number of the ray in the call at home
+};
+static_assert(sizeof(Visit) == 96);
+
+/// The nearest hit that a visited rank has found.
+struct HitThere {
+    Hit hit;
+    uint32_t slot;
+    uint32_t unused = 0;
+};
+
+/// Whether a visited rank has found any hit.
+struct OcclusionThere {
+    uint32_t slot;
+    uint32_t occluded;
+};
+
+enum class ParcelKind : uint32_t {
+    NearestVisits,  // Visit
+    AnyVisits,      // Visit
+    Hits,           // HitThere
+    Occlusions,     // OcclusionThere
+    Failure,        // a character for the kind of an error, and its sentence
+    Note,           // bytes between hosts (host_ranks.h)
+};
+
+/// Items of one kind, of one call.
+class Parcel {
+public:
+    Parcel() = default;
+    /// call: a number that answers carry back, so that those to a call that was given up are told
+    /// from those to the next.
+    template <class T>
+    Parcel(ParcelKind kind, uint32_t call, std::span<const T> items)
+        : bytes_(sizeof(Head) + items.size_bytes()) {
+        static_assert(std::is_trivially_copyable_v<T>);
+        const Head head{kind, call};
+        std::memcpy(bytes_.data(), &head, sizeof(head));
+        if (!items.empty())
+            std::memcpy(bytes_.data() + sizeof(Head), items.data(), items.size_bytes());
+    }
+    /// Takes what the bytes() of another parcel were.
+    explicit Parcel(std::vector<std::byte> bytes) : bytes_(std::move(bytes)) {
+        assert(bytes_.size() >= sizeof(Head));
+    }
+
+    ParcelKind kind() const { return head().kind; }
+    uint32_t call() const { return head().call; }
+    bool has_visits() const {
+        return kind() == ParcelKind::NearestVisits || kind() == ParcelKind::AnyVisits;
+    }
+    template <class T>
+    std::span<const T> items() const {
+        const auto bytes = std::span(bytes_).subspan(sizeof(Head));
+        return {reinterpret_cast<const T*>(bytes.data()), bytes.size() / sizeof(T)};
+    }
+    std::span<const std::byte> bytes() const { return bytes_; }
+
+private:
+    struct Head {
+        ParcelKind kind;
+        uint32_t call;
+    };
+    static_assert(sizeof(Head) == 8); // items stay aligned
+
+    Head head() const {
+        Head head;
+        std::memcpy(&head, bytes_.data(), sizeof(head));
+        return head;
+    }
+
+    std::vector<std::byte> bytes_;
+};
+
+} // namespace ovc

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: Apache-2.0
+// Cuts calls into journeys, asks filters about what these bring home, and counts.
+#include "plugin/ranks/ranked_scene.h"
+
+#include "core/system/stopwatch.h"
+
+#include <algorithm>
+#include <cassert>
+#include <numeric>
+
+namespace ovc {
+
+RankedScene::RankedScene(const Soup& soup, RankedParts parts)
+    : parts_(std::move(parts)),
+      server_(*parts_.local, *parts_.post, parts_.threads),
+      itinerary_{soup, parts_.certified, *parts_.finder, *parts_.post} {}
+
+RankedScene::~RankedScene() {
+    parts_.post->close();
+}
+
+Result<Done> RankedScene::travel(RaySpan rays, const Exclusions& without, std::span<Hit> hits,
+                                 std::span<uint8_t> occluded) {
+    constexpr size_t kMax = JourneyRays::kMaxRays;
+    const size_t parts = std::max<size_t>((rays.size() + kMax - 1) / kMax, 1);
+    for (size_t part = 0; part < parts; ++part) {
+        const size_t first = part * kMax, count = std::min(kMax, rays.size() - first);
+        const Exclusions of_part = without.subspan(first, count);
+        const JourneyRays some{rays.subspan(first, count), of_part,
+                               hits.empty() ? hits : hits.subspan(first, count),
+                               occluded.empty() ? occluded : occluded.subspan(first, count)};
+        watch_.begin_part(part, parts);
+        Journey journey(itinerary_, some, ++calls_, watch_);
+        journey.watch_idle([this] { return server_.is_idle(); });
+        const Result<Done> done = journey.run();
+        counted_.rays_sent += journey.visits_elsewhere();
+        counted_.seconds_waiting += journey.seconds_waiting();
+        if (!done)
+            return done;
+    }
+    return watch_.unless_cancelled();
+}
+
+namespace {
+
+/// Rays whose hit a filter has dropped, and which go on behind it.
+struct GoingOn {
+    std::vector<uint32_t> numbers; // in the call
+    std::vector<Ray> rays;
+    std::vector<TriangleId> skip;
+    std::vector<Hit> after;
+    std::vector<uint32_t> masks;
+    std::vector<Hit> hits;
+
+    GoingOn(std::vector<uint32_t> numbers_, RaySpan all, const Exclusions& without,
+            std::span<const Hit> dropped)
+        : numbers(std::move(numbers_)), hits(numbers.size()) {
+        for (const uint32_t i : numbers) {
+            rays.push_back(all[i]);
+            skip.push_back(without[i].skip);
+            after.push_back(dropped[i]);
+            masks.push_back(without.sieves[i].mask);
+        }
+    }
+
+    Exclusions without() const {
+        Exclusions all(skip, after);
+        all.sieves.masks = masks;
+        return all;
+    }
+};
+
+/// Returns those of the rays whose hits their filters drop; nothing where one stops the call.
+std::optional<std::vector<uint32_t>> dropped(std::span<const uint32_t> rays, const Sieves& sieves,
+                                             std::span<const Hit> hits) {
+    std::vector<uint32_t> out;
+    for (size_t first = 0; first < rays.size();) {
+        HitFilter* const filter = sieves[rays[first]].filter;
+        std::vector<uint32_t> asked;
+        std::vector<uint64_t> names;
+        std::vector<Hit> found;
+        for (; first < rays.size() && sieves[rays[first]].filter == filter; ++first)
+            if (const uint32_t i = rays[first]; filter && hits[i].is_hit()) {
+                asked.push_back(i);
+                names.push_back(sieves[i].name);
+                found.push_back(hits[i]);
+            }
+        std::vector<uint8_t> keep(asked.size(), 1);
+        if (!asked.empty() && !filter->keep(names, found, keep))
+            return std::nullopt;
+        for (size_t i = 0; i < asked.size(); ++i)
+            if (!keep[i])
+                out.push_back(asked[i]);
+    }
+    return out;
+}
+
+} // namespace
+
+/// Answers rays whose exclusions may have filters, which are asked here, at home.
+Result<Done> RankedScene::nearest(RaySpan rays, const Exclusions& without, std::span<Hit> hits) {
+    Exclusions plain = without;
+    plain.sieves.filters = {};
+    Result<Done> done = travel(rays, plain, hits, {});
+    if (!done || without.sieves.filters.empty())
+        return done;
+    std::vector<uint32_t> asked(rays.size());
+    std::iota(asked.begin(), asked.end(), 0u);
+    while (true) {
+        auto further = dropped(asked, without.sieves, hits);
+        if (!further)
+            return Error{"the filter stopped the call", ErrorKind::Cancelled};
+        if (further->empty())
+            return Done{};
+        GoingOn some(std::move(*further), rays, without, hits);
+        if (done = travel(some.rays, some.without(), some.hits, {}); !done)
+            return done;
+        for (size_t i = 0; i < some.numbers.size(); ++i)
+            hits[some.numbers[i]] = some.hits[i];
+        asked = std::move(some.numbers);
+    }
+}
+
+Result<Done> RankedScene::intersect(RaySpan rays, const Exclusions& without, std::span<Hit> hits) {
+    const Stopwatch watch;
+    watch_.begin_call();
+    const Result<Done> done = nearest(rays, without, hits);
+    counted_.nearest_rays += rays.size();
+    counted_.seconds_trace += watch.seconds();
+    return done;
+}
+
+Result<Done> RankedScene::occluded(RaySpan rays, const Exclusions& without,
+                                   std::span<uint8_t> occluded) {
+    const Stopwatch watch;
+    watch_.begin_call();
+    counted_.occlusion_rays += rays.size();
+    Result<Done> done = Done{};
+    if (without.sieves.filters.empty()) {
+        done = travel(rays, without, {}, occluded);
+    } else {
+        std::vector<Hit> hits(rays.size());
+        done = nearest(rays, without, hits);
+        std::ranges::transform(hits, occluded.begin(), &Hit::is_hit);
+    }
+    counted_.seconds_trace += watch.seconds();
+    return done;
+}
+
+Result<Done> RankedScene::all_hits(RaySpan rays, const Exclusions& without, const AllHits& all) {
+    watch_.begin_call();
+    std::ranges::fill(all.hits, Hit());
+    std::ranges::fill(all.counts, 0u);
+    if (all.has_enough(0))
+        return Done{};
+    std::vector<Hit> hits(rays.size());
+    Result<Done> done = nearest(rays, without, hits);
+    std::vector<uint32_t> numbers(rays.size());
+    std::iota(numbers.begin(), numbers.end(), 0u);
+    for (size_t n = 0; done; ++n) {
+        std::vector<uint32_t> further;
+        for (const uint32_t i : numbers)
+            if (hits[i].is_hit()) {
+                all.set(i, n, hits[i]);
+                if (!all.has_enough(n + 1))
+                    further.push_back(i);
+            }
+        if (further.empty())
+            break;
+        GoingOn some(std::move(further), rays, without, hits);
+        Exclusions behind = some.without();
+        std::vector<HitFilter*> filters;
+        std::vector<uint64_t> names;
+        for (const uint32_t i : some.numbers) {
+            filters.push_back(without.sieves[i].filter);
+            names.push_back(without.sieves[i].name);
+        }
+        if (!without.sieves.filters.empty())
+            behind.sieves.filters = filters;
+        behind.sieves.names = names;
+        done = nearest(some.rays, behind, some.hits);
+        for (size_t i = 0; i < some.numbers.size(); ++i)
+            hits[some.numbers[i]] = some.hits[i];
+        numbers = std::move(some.numbers);
+    }
+    return done;
+}
+
+Result<Done> RankedScene::purge() {
+    // The server may be tracing for another rank.
+    return server_.purge();
+}
+
+ovc_statistics RankedScene::report() const {
+    ovc_statistics told = server_.report();
+    told.rank = parts_.post->rank();
+    told.ranks = parts_.post->ranks();
+    told.nearest_rays = counted_.nearest_rays;
+    told.occlusion_rays = counted_.occlusion_rays;
+    told.seconds_trace = counted_.seconds_trace;
+    told.rays_sent = counted_.rays_sent;
+    told.rays_served = server_.served();
+    const PostCounts post = parts_.post->counts();
+    told.bytes_sent = post.bytes_sent;
+    told.bytes_received = post.bytes_received;
+    told.seconds_waiting = counted_.seconds_waiting;
+    return told;
+}
+
+} // namespace ovc

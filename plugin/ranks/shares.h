@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// Shares: which rank has which page of a scene. Every rank computes the same shares from the same
+// scene, so nothing is sent for it.
+#pragma once
+
+#include "core/box.h"
+#include "core/ray.h"
+#include "plugin/build/built_scene.h"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace ovc {
+
+/// The owner of a page that every rank has.
+inline constexpr uint32_t kEveryRank = kNone;
+
+/// Where a page lies in the world: once, or once for each instance of its mesh.
+struct PageBox {
+    Box box; // every hit of the page's triangles there lies in it
+    uint32_t page;
+};
+
+/// Returns the boxes of all pages, in the order of pages. The scene has no top-level tree yet.
+std::vector<PageBox> page_boxes(const BuiltScene& scene);
+
+struct ShareOptions {
+    uint32_t ranks = 1;
+    /// Pages of meshes that are placed several times are on every rank while they take no more than
+    /// this together, those of the most instances first: most rays come by them.
+    uint64_t everywhere_bytes = uint64_t(24) << 20;
+    /// Rays such as will be traced. None: random lines through the scene.
+    std::span<const Ray> sample{};
+};
+
+/// Returns the owner of each page. Ranks get about the same number of bytes, in a few stretches of
+/// pages that lie together, and as far as these allow the same number of the sample's rays.
+std::vector<uint32_t> share_out(const BuiltScene& scene, std::span<const PageBox> boxes,
+                                const ShareOptions& options);
+
+} // namespace ovc

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// Compares what pages take with the budgets, and shares them out.
+#include "plugin/ranks/sharing.h"
+
+#include "core/text/format_text.h"
+
+namespace ovc {
+
+/// Shares of fewer leaves a rank differ much.
+static constexpr uint64_t kFewLeaves = 4;
+
+bool Sharing::fits(const BuiltScene& scene) const {
+    const uint64_t bytes = scene.level2_bytes();
+    const uint64_t rest = options_.gpu_bytes / 4; // for rays, answers and the top-level tree
+    return (!options_.gpu_bytes || bytes <= options_.gpu_bytes - rest) &&
+           (!options_.host_bytes || bytes <= options_.host_bytes);
+}
+
+PagesKept Sharing::choose(const BuiltScene& scene) {
+    finder_.reset();
+    if (!options_.always && fits(scene))
+        return PagesKept(scene.pages.size(), true);
+    const uint32_t ranks = options_.shares.ranks;
+    if (scene.pages.size() < kFewLeaves * ranks && options_.rank == 0)
+        say(log_, LogLevel::Warning,
+            format_text("{} leaves for {} ranks: their shares will differ much; with smaller leaves "
+                        "they would not",
+                        scene.pages.size(), ranks));
+    const std::vector<PageBox> boxes = page_boxes(scene);
+    const std::vector<uint32_t> owners = share_out(scene, boxes, options_.shares);
+    finder_ = std::make_unique<StopFinder>(boxes, owners, options_.rank);
+    PagesKept kept(owners.size());
+    for (size_t page = 0; page < owners.size(); ++page)
+        kept[page] = owners[page] == kEveryRank || owners[page] == options_.rank;
+    return kept;
+}
+
+} // namespace ovc

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// VisitServer: traces the rays that visit this rank, its own and those of others, through the pages
+// that it has. It works beside all calls of the host, so no rank waits for another to call.
+#pragma once
+
+#include "core/system/parallel.h"
+#include "plugin/ranks/post.h"
+#include "plugin/structure/structure.h"
+
+#include <atomic>
+#include <mutex>
+#include <thread>
+
+namespace ovc {
+
+class VisitServer {
+public:
+    /// local: traces through the pages of this rank; only the server calls it from now on. threads:
+    /// those that loops run on, or null.
+    VisitServer(Structure& local, Post& post, LoopThreads* threads);
+    ~VisitServer();
+    VisitServer(const VisitServer&) = delete;
+
+    /// Whether there are no rays to trace just now.
+    bool is_idle() const { return is_idle_; }
+    /// Returns how many rays of other ranks were traced.
+    uint64_t served() const { return served_; }
+    /// Returns what is counted of what traces here.
+    ovc_statistics report() {
+        const std::lock_guard lock(local_mutex_);
+        return local_.report();
+    }
+    /// Gives back the memory of what traces here, between two batches.
+    Result<Done> purge() {
+        const std::lock_guard lock(local_mutex_);
+        return local_.purge();
+    }
+
+private:
+    struct Batch;
+
+    void run(const std::stop_token& stop);
+    void serve(std::span<const Inbox::Letter> letters, ParcelKind kind);
+    void trace_nearest(const Batch& batch, std::span<const Inbox::Letter> letters);
+    void trace_any(const Batch& batch, std::span<const Inbox::Letter> letters);
+    void fail(std::span<const Inbox::Letter> letters, const Error& error);
+
+    Structure& local_;
+    Post& post_;
+    LoopThreads* const threads_;
+    std::mutex local_mutex_;
+    std::atomic<bool> is_idle_{true};
+    std::atomic<uint64_t> served_{0};
+    std::jthread thread_; // ends first
+};
+
+} // namespace ovc
