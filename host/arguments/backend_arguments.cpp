@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // --backend, --gpu-memory, --host-memory, --leaf-triangles, --leaves, --device, --precision,
-// --kernel, --level1, --level1-build.
+// --kernel, --ranks-own, --rank-timeout, --level1, --level1-build.
 #include "host/arguments/backend_arguments.h"
 #include "core/text/suggestion.h"
 #include "host/arguments/arguments.h"
+#include "host/ranks/ranks.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -16,6 +17,8 @@ static constexpr std::string_view kPrecisions[] = {"certified", "fast"};
 static constexpr std::string_view kKernels[] = {"auto", "fragment", "compute"};
 static constexpr std::string_view kLevels1[] = {"kd", "grid", "bvh"};
 static constexpr std::string_view kLevel1Builds[] = {"top-down", "bottom-up"};
+/// In the order of ovc_ranks_own.
+static constexpr std::string_view kRanksOwn[] = {"auto", "share", "all"};
 /// In the order of BackendKind.
 static constexpr std::string_view kBackends[] = {
     "auto",          "two-level", "cpu-kdtree", "embree",   "single-texture",
@@ -69,6 +72,16 @@ void BackendArguments::add_to(CLI::App& app, const char* host_memory_help) {
     app.add_option("--kernel", kernel, "auto, fragment or compute; they answer alike")
         ->group(group)
         ->type_name(choice_names(kKernels));
+    app.add_option("--ranks-own", ranks_own,
+                   "Under mpirun, which leaves each rank has: auto (all where they fit, else a "
+                   "share), share or all")
+        ->group(group)
+        ->type_name(choice_names(kRanksOwn));
+    app.add_option("--rank-timeout", rank_timeout,
+                   "Under mpirun, a rank that gives no word for so long is lost, and the job ends; "
+                   "default: 60")
+        ->group(group)
+        ->type_name("SECONDS");
     app.add_option("--level1", level1, "Level 1 of thesis-two-level: kd (the default), grid or bvh")
         ->group(group)
         ->type_name(choice_names(kLevels1));
@@ -101,6 +114,26 @@ Result<Done> BackendArguments::check_meaning(BackendKind kind) const {
                 return Error{
                     fmt::format("{} means nothing to the backend {}; thesis-two-level has it",
                                 option, backend)};
+    return Done{};
+}
+
+Result<Done> BackendArguments::resolve_ranks(BackendOptions& options) const {
+    const Result<size_t> own = parse_choice("--ranks-own", ranks_own, kRanksOwn);
+    if (!own)
+        return own.error();
+    options.ranks_own = ovc_ranks_own(*own);
+    if (!rank_timeout.empty()) {
+        const Result<double> seconds = parse_real("--rank-timeout", rank_timeout, 0.1, 1e6);
+        if (!seconds)
+            return seconds.error();
+        options.rank_timeout = *seconds;
+    }
+    for (const auto& [option, value] :
+         {std::pair{"--ranks-own", &ranks_own}, {"--rank-timeout", &rank_timeout}})
+        if (!value->empty() && !Ranks::are_there())
+            return Error{fmt::format("{} is for several processes, which this is not: mpirun -n 4 "
+                                     "overcast starts four",
+                                     option)};
     return Done{};
 }
 
@@ -149,6 +182,8 @@ Result<BackendOptions> BackendArguments::resolve() const {
     if (!kernel_choice)
         return kernel_choice.error();
     options.kernel = ovc_kernel(*kernel_choice);
+    if (const Result<Done> fine = resolve_ranks(options); !fine)
+        return fine.error();
     const Result<size_t> level1_choice = parse_choice("--level1", level1, kLevels1);
     if (!level1_choice)
         return level1_choice.error();

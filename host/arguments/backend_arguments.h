@@ -27,6 +27,8 @@ struct BackendArguments {
     std::string device;
     std::string precision;
     std::string kernel;
+    std::string ranks_own;
+    std::string rank_timeout;
     std::string level1;
     std::string level1_build;
 
@@ -39,6 +41,7 @@ struct BackendArguments {
 
 private:
     Result<Done> check_meaning(BackendKind kind) const;
+    Result<Done> resolve_ranks(BackendOptions& options) const;
 };
 
 } // namespace ovc

@@ -105,6 +105,9 @@ struct BackendOptions {
     BuildWatching watching = BuildWatching::None;
     uint64_t host_bytes = 0;              // of host memory, for a scene on a disk; 0: no limit
     const SceneOnDisk* on_disk = nullptr; // what was saved lies there; outlives the backend
+    ovc_ranks_own ranks_own = OVC_RANKS_OWN_AUTO; // where there are several ranks, like the next
+    double rank_timeout = 0;                      // seconds; 0: the library's default
+    std::span<const Ray> sample{}; // rays such as will be traced; outlives the making
     Bytes saved{}; // of an earlier run over the same soup; outlives the backend. Two-level only
 };
 

@@ -5,6 +5,7 @@
 #include "host/backend/mesh_numbers.h"
 #include "host/backend/plugin_config.h"
 #include "host/backend/plugin_loader.h"
+#include "host/ranks/ranks.h"
 #include "host/scene/soup_difference.h"
 #include "host/terminal/build_watch.h"
 
@@ -372,6 +373,12 @@ Result<ovc_scene_config> config_of(const BackendOptions& options, const ovc_devi
         config.read_saved = read_saved;
         config.read_user = const_cast<SceneOnDisk*>(options.on_disk);
         config.saved_bytes = options.on_disk->levels_bytes;
+    }
+    if (Ranks::of_run() && config.structure == OVC_STRUCTURE_TWO_LEVEL) {
+        config.ranks_own = options.ranks_own;
+        config.rank_timeout = options.rank_timeout;
+        config.sample = as_abi(options.sample);
+        config.sample_rays = options.sample.size();
     }
     return config;
 }

@@ -2,6 +2,8 @@
 // Loads the plugin by dlopen, and wraps its handles.
 #include "host/backend/plugin_loader.h"
 
+#include "host/ranks/ranks.h"
+
 #include <dlfcn.h>
 #include <fmt/format.h>
 
@@ -55,7 +57,8 @@ std::string find_plugin(const std::string& library) {
 }
 
 Result<const ovc_api*> load_plugin(const std::string& library) {
-    return load_from(find_plugin(library));
+    const bool is_ranked = library == kProduct && Ranks::of_run();
+    return load_from(find_plugin(is_ranked ? kRankedProduct : library));
 }
 
 static void forward_log(void* user, ovc_log_level level, const char* message) {

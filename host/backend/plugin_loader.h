@@ -23,7 +23,8 @@ inline constexpr const char* kThesis = "libovercast-thesis.so";
 /// set, it is the path of the product.
 std::string find_plugin(const std::string& library = kProduct);
 
-/// Loads the library that find_plugin() finds. It stays loaded until the program ends.
+/// Loads the library that find_plugin() finds; among several ranks, kRankedProduct in the place of
+/// the product. It stays loaded until the program ends.
 Result<const ovc_api*> load_plugin(const std::string& library = kProduct);
 
 struct DestroyDevice {

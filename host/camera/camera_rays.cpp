@@ -41,8 +41,13 @@ CameraRays::CameraRays(const Pinhole& pinhole, const Film& film)
     std::erase_if(order_, [&](uint32_t pixel) { return film.done(pixel); });
 }
 
-CameraRays::CameraRays(const Pinhole& pinhole, std::span<const dvec2> points)
-    : pinhole_(pinhole), samples_(1), points_(points) {}
+CameraRays::CameraRays(const Pinhole& pinhole, const Film& film, std::span<const dvec2> points)
+    : pinhole_(pinhole), samples_(1), points_(points) {
+    assert(points.size() == uint64_t(film.width()) * film.height());
+    for (uint32_t pixel = 0; pixel < points.size(); ++pixel)
+        if (!film.done(pixel))
+            order_.push_back(pixel);
+}
 
 CameraRays::Place CameraRays::place(uint64_t i) const {
     if (points_.empty()) {
@@ -50,10 +55,11 @@ CameraRays::Place CameraRays::place(uint64_t i) const {
         return {pixel, sample, pixel % pinhole_.width(), pixel / pinhole_.width(),
                 sample_place(sample, samples_)};
     }
-    const dvec2& at = points_[i];
+    const uint32_t pixel = order_[i];
+    const dvec2& at = points_[pixel];
     const uint32_t x = std::min(uint32_t(at.x), pinhole_.width() - 1);
     const uint32_t y = std::min(uint32_t(at.y), pinhole_.height() - 1);
-    return {uint32_t(i), 0, x, y, at - dvec2(x, y)};
+    return {pixel, 0, x, y, at - dvec2(x, y)};
 }
 
 void CameraRays::make(uint64_t first, size_t count, RayList<Path>& paths) const {

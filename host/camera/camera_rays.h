@@ -23,12 +23,11 @@ public:
     /// The pinhole must outlive it; the film need not.
     CameraRays(const Pinhole& pinhole, const Film& film);
     /// Makes a ray through each of the points of the picture, which are in pixels from its top left
-    /// corner, in their order. Ray i belongs to pixel i of the film. The points must outlive it.
-    CameraRays(const Pinhole& pinhole, std::span<const dvec2> points);
+    /// corner, in their order, one for each pixel of the film that is not done. The points must
+    /// outlive it.
+    CameraRays(const Pinhole& pinhole, const Film& film, std::span<const dvec2> points);
 
-    uint64_t size() const {
-        return points_.empty() ? uint64_t(order_.size()) * samples_ : points_.size();
-    }
+    uint64_t size() const { return uint64_t(order_.size()) * samples_; }
 
     /// Appends `count` rays from index `first` on to `paths`; first + count <= size().
     void make(uint64_t first, size_t count, RayList<Path>& paths) const;

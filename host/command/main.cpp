@@ -2,16 +2,30 @@
 // The `overcast` command hands over to a subcommand. It prints an error as one sentence and exits
 // with 1.
 #include "host/command/command.h"
+#include "host/ranks/ranks.h"
 #include "host/terminal/interrupt.h"
 #include "host/terminal/message.h"
 
+#include <fmt/format.h>
+
+#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <exception>
 #include <new>
+#include <string>
+#include <thread>
 
+/// Of several ranks, one that fails ends all, for the others would wait for it.
 static int fail(std::string_view sentence) {
-    ovc::print_message(sentence);
+    const ovc::Ranks* const ranks = ovc::Ranks::of_run();
+    if (ranks && !ranks->is_first()) // what all of them have to say, the first one says
+        std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    ovc::print_message(
+        !ranks ? std::string(sentence)
+               : fmt::format("{}: {}", ranks->name_of(ranks->rank()), sentence));
+    if (ranks)
+        ranks->end_all(ovc::kExitError);
     return ovc::kExitError;
 }
 

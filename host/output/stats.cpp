@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cstring>
 #include <string_view>
 #include <utility>
@@ -134,6 +135,36 @@ std::string frame_json(const FrameStats& frame) {
     return frame_of(frame).dump();
 }
 
+/// Returns how much more than the mean the busiest rank had to do; 1 where all had the same.
+static double imbalance(const RenderStats& s) {
+    double sum = 0, max = 0;
+    for (const RankStats& rank : s.ranks) {
+        sum += rank.seconds_busy();
+        max = std::max(max, rank.seconds_busy());
+    }
+    return sum > 0 ? max * double(s.ranks.size()) / sum : 1;
+}
+
+static Json ranks_of(const RenderStats& s) {
+    Json ranks = Json::array();
+    for (size_t i = 0; i < s.ranks.size(); ++i) {
+        const ovc_statistics& t = s.ranks[i].tracing;
+        ranks.push_back({{"name", s.rank_names[i]},
+                         {"rays", rays_of(s.ranks[i].rays)},
+                         {"leaves", t.leaves},
+                         {"level2_bytes", t.level2_bytes},
+                         {"gpu_peak_bytes", t.gpu_peak_bytes},
+                         {"host_peak_bytes", s.ranks[i].host_peak_bytes},
+                         {"rays_sent", t.rays_sent},
+                         {"rays_served", t.rays_served},
+                         {"bytes_sent", t.bytes_sent},
+                         {"bytes_received", t.bytes_received},
+                         {"disk_bytes", t.disk_bytes},
+                         {"time", {{"trace", t.seconds_trace}, {"waiting", t.seconds_waiting}}}});
+    }
+    return ranks;
+}
+
 static Json left_out_of(const RenderStats& s) {
     Json list = Json::array();
     for (const LeftOut& item : s.left_out)
@@ -158,6 +189,8 @@ std::string stats_json(const RenderStats& s) {
     document["time"]["output"] = s.seconds_output;
     document["time"]["total"] = s.seconds_total;
     document["frames"] = frames_of(s);
+    document["of_ranks"] = ranks_of(s);
+    document["imbalance"] = imbalance(s);
     // A name of a file or a driver need not be UTF-8; what is not is replaced rather than
     // thrown about.
     return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
@@ -197,6 +230,20 @@ static std::string gpu_lines(const ovc_statistics& t) {
     return text;
 }
 
+static std::string ranks_line(const RenderStats& s) {
+    uint64_t rays = 0, bytes = 0, host = 0, gpu = 0;
+    for (const RankStats& rank : s.ranks) {
+        rays += rank.tracing.rays_sent;
+        bytes += rank.tracing.bytes_sent;
+        host = std::max(host, rank.host_peak_bytes);
+        gpu = std::max(gpu, rank.tracing.gpu_peak_bytes);
+    }
+    return fmt::format("  ranks      {}: {} visits of rays to others, {} sent; {} of the GPU and {} "
+                       "of host memory at most; the busiest had {:.2f} times the mean to do\n",
+                       s.ranks.size(), human_count(rays), human_bytes(bytes), human_bytes(gpu),
+                       human_bytes(host), imbalance(s));
+}
+
 std::string stats_summary(const RenderStats& s) {
     const ovc_statistics& t = s.tracing;
     const RayCounts& rays = s.report.rays;
@@ -219,6 +266,8 @@ std::string stats_summary(const RenderStats& s) {
         text += fmt::format(
             "  flagged    {} answers, decided in double precision; {} of them traced again\n",
             human_count(t.flagged), human_count(t.retraced));
+    if (!s.ranks.empty())
+        text += ranks_line(s);
     if (!s.left_out.empty())
         text += fmt::format("  left out   {}\n", left_out_text(s.left_out));
     text += fmt::format("  host       {} at most\n", human_bytes(host_peak_bytes()));

@@ -33,6 +33,16 @@ ovc_statistics counted_between(const ovc_statistics& before, const ovc_statistic
 /// Returns `now`, and what `earlier` has counted besides: a reading of another structure.
 ovc_statistics counted_besides(const ovc_statistics& earlier, const ovc_statistics& now);
 
+/// What one of several ranks has counted.
+struct RankStats {
+    ovc_statistics tracing{};
+    RayCounts rays;
+    uint64_t host_peak_bytes = 0;
+
+    /// Returns the time in which it traced rays, its own or those of others.
+    double seconds_busy() const { return tracing.seconds_trace - tracing.seconds_waiting; }
+};
+
 struct RenderStats {
     std::string scene;
     uint32_t width = 0;
@@ -41,6 +51,8 @@ struct RenderStats {
     ovc_statistics tracing{};
     std::vector<FrameStats> frames; // those that are finished, and for a single picture also a part
     std::string renderer;
+    std::vector<RankStats> ranks; // of a run of several; else empty, as the next
+    std::vector<std::string> rank_names;
     std::vector<LeftOut> left_out;
     uint64_t frames_there = 0; // of an earlier run, not rendered
     bool scene_from_cache = false;

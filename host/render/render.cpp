@@ -4,6 +4,7 @@
 
 #include "core/system/stopwatch.h"
 #include "host/camera/camera_rays.h"
+#include "host/ranks/shared_film.h"
 #include "host/render/render_batched.h"
 #include "host/render/render_mixed.h"
 #include "host/shade/path_tracer.h"
@@ -50,6 +51,7 @@ RenderReport& RenderReport::operator+=(const RenderReport& other) {
     seconds_shade += other.seconds_shade;
     seconds_cpu += other.seconds_cpu;
     pixels_done += other.pixels_done;
+    failed = failed || other.failed;
     return *this;
 }
 
@@ -78,12 +80,14 @@ namespace {
 /// point.
 class AdaptivePasses {
 public:
-    /// trace: renders all rays onto a film of one sample a pixel.
-    using Trace =
-        std::function<Result<RenderReport>(const CameraRays&, const RenderObserver&, Film&)>;
+    /// trace: renders rays through the points onto a film that has a pixel for each.
+    using Trace = std::function<Result<RenderReport>(std::span<const dvec2> points,
+                                                     const RenderObserver&, Film&)>;
 
     AdaptivePasses(const Pinhole& pinhole, const RenderObserver& observe, Trace trace)
-        : pinhole_(pinhole), observe_(observe), trace_(std::move(trace)) {}
+        : pixels_(uint64_t(pinhole.width()) * pinhole.height()),
+          observe_(observe),
+          trace_(std::move(trace)) {}
 
     /// Fills the film, unless it was stopped. The film has one sample a pixel.
     Result<RenderReport> run(const Antialias& how, double gamma, Film& film) {
@@ -112,7 +116,7 @@ private:
             all.pixels_done = std::min(all.pixels_done, pixels_);
             return !observe_ || observe_(all);
         };
-        const Result<RenderReport> done = trace_(CameraRays(pinhole_, points), observe, film);
+        const Result<RenderReport> done = trace_(points, observe, film);
         if (!done) {
             error_ = done.error();
             return false;
@@ -124,8 +128,7 @@ private:
         return done->complete;
     }
 
-    const Pinhole& pinhole_;
-    const uint64_t pixels_ = uint64_t(pinhole_.width()) * pinhole_.height();
+    const uint64_t pixels_;
     const RenderObserver& observe_;
     const Trace trace_;
     std::optional<Error> error_;
@@ -150,11 +153,28 @@ Result<RenderReport> render_picture(const Scene& scene, const Camera& camera, Ba
                    : render_batched(*integrator, lights, rays, sight, backend, options.batch_rays,
                                     watch_it, to);
     };
+    // Ranks share out the pixels of a film; else all of them are this process's.
+    const auto render = [&](Film& to, bool to_all, const RenderObserver& watch_it,
+                            const RenderPart& part) {
+        return options.ranks ? render_shared(*options.ranks, to, to_all, part, watch_it)
+                             : part(watch_it, to);
+    };
+    const auto render_points = [&](std::span<const dvec2> points, const RenderObserver& watch_it,
+                                   Film& to) {
+        return render(to, /* to_all= */ true, watch_it,
+                      [&](const RenderObserver& watch_part, Film& part) {
+                          return trace(CameraRays(pinhole, part, points), watch_part, part);
+                      });
+    };
     const bool is_adaptive = options.antialias && film.pixels_done() == 0;
     Result<RenderReport> report =
         is_adaptive
-            ? AdaptivePasses(pinhole, observe, trace).run(*options.antialias, scene.gamma, film)
-            : trace(CameraRays(pinhole, film), observe, film);
+            ? AdaptivePasses(pinhole, observe, render_points)
+                  .run(*options.antialias, scene.gamma, film)
+            : render(film, /* to_all= */ false, observe,
+                     [&](const RenderObserver& watch_part, Film& part) {
+                         return trace(CameraRays(pinhole, part), watch_part, part);
+                     });
     if (!report)
         return report;
     report->pixels_done = film.pixels_done();

@@ -17,6 +17,8 @@
 
 namespace ovc {
 
+class Ranks;
+
 /// Whitted 1980 has mirrors, glass and point lights; Path, Kajiya 1986, has all light there is.
 enum class IntegratorKind { Whitted, Path };
 
@@ -35,6 +37,7 @@ struct RenderOptions {
     /// The batched form gives a backend at most so many rays at once. It bounds host memory too:
     /// at most about three times as many rays wait.
     size_t batch_rays = size_t(1) << 20;
+    const Ranks* ranks = nullptr; // that render the picture together; null: this process alone
 };
 
 struct RayCounts {
@@ -57,6 +60,7 @@ struct RenderReport {
     double seconds_cpu = 0;   // of all threads of this process
     uint64_t pixels_done = 0;
     bool complete = false; // false: `observe` stopped it; pixels that are done are on the film
+    bool failed = false;   // it is not complete because of an error, which the user was told
 
     RenderReport& operator+=(const RenderReport& other); // leaves `complete` as it is
 };

@@ -11,6 +11,7 @@
 #include "host/camera/camera.h"
 #include "host/film/unfinished.h"
 #include "host/output/stats.h"
+#include "host/ranks/shared_film.h"
 #include "host/render/frames.h"
 #include "host/render/render.h"
 #include "host/render/stage.h"
@@ -31,7 +32,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
+#include <span>
 
 namespace ovc {
 
@@ -74,6 +77,11 @@ static std::vector<std::string> outputs_of(const RenderJob& job, uint32_t frame)
     return outputs;
 }
 
+/// Whether this process is the one, or the first of several, which writes the outputs.
+static bool is_first_rank(const RenderJob& job) {
+    return !job.render.ranks || job.render.ranks->is_first();
+}
+
 /// Returns whether the job continues an earlier run that has finished this picture.
 static bool is_there(const RenderJob& job, uint32_t frame) {
     const std::vector<std::string> outputs = outputs_of(job, frame);
@@ -110,6 +118,7 @@ public:
         if (!frame)
             return frame.error();
         stats.report.complete = frame->report.complete;
+        stats.report.failed = frame->report.failed;
         if (!frame->report.complete && is_sequence())
             return Done{};
         stats.add(*frame);
@@ -131,6 +140,9 @@ private:
         Film film(options_.part->size.width, options_.part->size.height, job_.samples);
         if (const Result<Done> done = go_on_with(shot, film); !done)
             return done.error();
+        if (job_.render.ranks)
+            if (const Result<Done> done = spread_film(*job_.render.ranks, film); !done)
+                return done.error();
         if (const Result<RenderReport> report = trace(shot, film); report)
             frame.report = *report;
         else
@@ -140,8 +152,9 @@ private:
         frame.host_peak_bytes = host_peak_bytes();
         frame.seconds = watch.seconds(); // for the notes in its files
         const Stopwatch output;
-        const Result<Done> saved = frame.report.complete ? save_finished(shot, film, frame)
-                                                         : save_unfinished(shot, film, frame);
+        const Result<Done> saved = !is_first_rank(job_)     ? Done{}
+                                   : frame.report.complete ? save_finished(shot, film, frame)
+                                                           : save_unfinished(shot, film, frame);
         if (!saved)
             return saved.error();
         frame.seconds_output = output.seconds();
@@ -156,7 +169,7 @@ private:
     std::string film_of(const View& shot) const { return unfinished_film(outputs_of(shot)[0]); }
 
     Result<Done> go_on_with(const View& shot, Film& film) const {
-        if (!job_.go_on || !fs::exists(film_of(shot)))
+        if (!job_.go_on || !is_first_rank(job_) || !fs::exists(film_of(shot)))
             return Done{};
         const Result<Done> loaded = load_film(film_of(shot), checksum_of_picture(shot), film);
         if (loaded)
@@ -282,22 +295,23 @@ static void report(const RenderJob& job, const RenderStats& stats) {
                    printable(fmt::format("{}", fmt::join(job.outputs, ", "))));
     if (stats.report.complete)
         return;
+    const std::string_view how = stats.report.failed ? "the job has ended" : "interrupted";
     if (job.shots.empty() && stats.report.pixels_done == 0) {
-        print_message("interrupted; no pixel was done, and nothing is saved");
+        print_message(fmt::format("{}; no pixel was done, and nothing is saved", how));
         return;
     }
     if (job.shots.empty()) {
         print_message(fmt::format(
-            "interrupted; {:.0f} % of the picture is in {}, and the same command with "
+            "{}; {:.0f} % of the picture is in {}, and the same command with "
             "--continue goes on from there",
-            100.0 * double(stats.report.pixels_done) / (double(stats.width) * double(stats.height)),
+            how, 100.0 * double(stats.report.pixels_done) / (double(stats.width) * double(stats.height)),
             unfinished_picture(job.outputs[0])));
         return;
     }
     const size_t saved = stats.frames_there + stats.frames.size();
-    print_message(fmt::format("interrupted; {} of {} frames are saved, frame {} is the next, and "
+    print_message(fmt::format("{}; {} of {} frames are saved, frame {} is the next, and "
                               "the same command with --continue goes on from there",
-                              saved, job.shots.size(), job.shots[saved].frame));
+                              how, saved, job.shots.size(), job.shots[saved].frame));
 }
 
 /// Limits the threads of this process while the result lives; 0: no limit.
@@ -328,10 +342,13 @@ static std::vector<uint32_t> frames_of(const RenderJob& job) {
     return frames.empty() ? std::vector<uint32_t>{0} : frames;
 }
 
-/// Returns whether all pictures are there already, so that nothing need be read.
-static bool all_there(const RenderJob& job) {
-    return std::ranges::all_of(frames_of(job),
-                               [&](uint32_t frame) { return is_there(job, frame); });
+/// Returns for each frame whether is_there(), as the first rank sees it.
+static Result<RankBytes> frames_there(const RenderJob& job) {
+    RankBytes there;
+    for (const uint32_t frame : frames_of(job))
+        there.push_back(std::byte(is_there(job, frame)));
+    return job.render.ranks ? job.render.ranks->spread(there, [] { return true; })
+                            : Result<RankBytes>(std::move(there));
 }
 
 /// Tells the user where --continue finds neither pixels nor frames of an earlier run.
@@ -358,24 +375,26 @@ static void tell_of_up_left_out(const RenderJob& job, const Scene& scene, const 
 }
 
 /// Renders every shot in turn until one is interrupted.
-static Result<Done> render_shots(const RenderJob& job, const PicturePart& part, Stage& stage,
-                                 Scene& scene, const LogSink& log, RenderStats& stats) {
+static Result<Done> render_shots(const RenderJob& job, std::span<const std::byte> there,
+                                 const PicturePart& part, Stage& stage, Scene& scene,
+                                 const LogSink& log, RenderStats& stats) {
     stats.report.complete = true;
     const InterruptGuard interrupt; // of all shots, or one between two of them would be forgotten
     const std::vector<Shot> shots =
         job.shots.empty() ? std::vector<Shot>{Shot{.camera = job.camera}} : job.shots;
-    for (const Shot& shot : shots) {
-        if (is_there(job, shot.frame)) {
+    for (size_t i = 0; i < shots.size(); ++i) {
+        const Shot& shot = shots[i];
+        if (there[i] != std::byte(0)) {
             ++stats.frames_there;
             continue;
         }
         const Stopwatch watch;
         FrameStats begun;
         begun.tracing = stage.statistics();
-        const Result<Done> there = stage.go_to(shot.moment);
-        stats.report.complete = there || there.error().kind != ErrorKind::Cancelled;
-        if (!there)
-            return stats.report.complete ? there : Result<Done>(Done{});
+        const Result<Done> moved = stage.go_to(shot.moment);
+        stats.report.complete = moved || moved.error().kind != ErrorKind::Cancelled;
+        if (!moved)
+            return stats.report.complete ? moved : Result<Done>(Done{});
         const View view{shot.frame, shot.camera && !job.shots.empty()
                                         ? *shot.camera
                                         : still_camera(scene, job, part.picture)};
@@ -424,8 +443,53 @@ static Result<Done> all_was_read(const Scene& scene) {
     return failed ? Result<Done>(*failed) : Done{};
 }
 
+/// Returns rays of the first picture's camera, by which ranks share leaves out.
+static std::vector<Ray> camera_sample(const RenderJob& job, const PicturePart& part,
+                                      const Scene& scene) {
+    constexpr uint32_t kSide = 64;
+    std::vector<Ray> rays;
+    if (!job.render.ranks)
+        return rays;
+    const Camera camera = !job.shots.empty() && job.shots[0].camera
+                              ? *job.shots[0].camera
+                              : still_camera(scene, job, part.picture);
+    const Pinhole pinhole(camera, part);
+    for (uint32_t i = 0; i < kSide * kSide; ++i)
+        rays.push_back(pinhole.ray(i % kSide * part.size.width / kSide,
+                                   i / kSide * part.size.height / kSide, dvec2(0.5)));
+    return rays;
+}
+
+/// Brings what all ranks have counted to the first one.
+static Result<Done> gather_ranks(const Ranks& ranks, RenderStats& stats) {
+    const RankStats mine{stats.tracing, stats.report.rays, host_peak_bytes()};
+    const auto all =
+        ranks.gather(std::as_bytes(std::span(&mine, 1)), [] { return true; });
+    if (!all)
+        return all.error();
+    RayCounts rays;
+    for (uint32_t rank = 0; rank < all->size(); ++rank) {
+        RankStats& of_rank = stats.ranks.emplace_back();
+        std::memcpy(&of_rank, (*all)[rank].data(), sizeof(of_rank));
+        stats.rank_names.push_back(ranks.name_of(rank));
+        rays += of_rank.rays;
+    }
+    stats.report.rays = rays;
+    return Done{};
+}
+
+/// Ends the job, once the first rank has saved what there is.
+[[noreturn]] static void end_all_ranks(const Ranks& ranks, int code) {
+    if (!ranks.is_first())
+        (void)ranks.spread({}, [] { return true; }); // which the first one never does
+    ranks.end_all(code);
+}
+
 Result<int> render(const RenderJob& job) {
-    if (all_there(job)) {
+    const Result<RankBytes> there = frames_there(job);
+    if (!there)
+        return there.error();
+    if (std::ranges::count(*there, std::byte(0)) == 0) {
         if (!job.quiet)
             fmt::print("all is there in {}; without --continue it is rendered anew\n",
                        printable(fmt::format("{}", fmt::join(job.outputs, ", "))));
@@ -459,6 +523,8 @@ Result<int> render(const RenderJob& job) {
     if (const Result<Done> fine = check_frames(job, *scene); !fine)
         return fine.error();
     BackendOptions options = options_for(job, *scene);
+    const std::vector<Ray> sample = camera_sample(job, *part, *scene);
+    options.sample = sample;
     Result<std::unique_ptr<Backend>> backend = make_backend(scene->soup, options, log, opening);
     if (!backend && backend.error().kind == ErrorKind::Cancelled) {
         print_message("interrupted while building; nothing was rendered");
@@ -467,21 +533,32 @@ Result<int> render(const RenderJob& job) {
     if (!backend)
         return backend.error();
 
-    cache.keep(*scene, **backend, log);
+    if (!job.render.ranks)
+        cache.keep(*scene, **backend, log);
     options.saved = {}; // of the first moment
+    options.sample = {};
     Stage stage(job, *scene, std::move(*backend), options);
-    Result<Done> done = render_shots(job, *part, stage, *scene, log, stats);
+    Result<Done> done = render_shots(job, *there, *part, stage, *scene, log, stats);
     if (done)
         done = all_was_read(*scene);
     if (!done)
         return done.error();
     add_what_backend_tells(job, *scene, stage, stats);
+    if (job.render.ranks && stats.report.complete)
+        if (done = gather_ranks(*job.render.ranks, stats); !done)
+            return done.error();
     stats.seconds_total = total.seconds();
-    if (!job.stats.empty())
+    if (!job.stats.empty() && is_first_rank(job))
         if (done = save_text(stats_json(stats), job.stats); !done)
             return done.error();
-    report(job, stats);
-    return stats.report.complete ? kExitOk : kExitInterrupted;
+    if (is_first_rank(job))
+        report(job, stats);
+    const int code = stats.report.complete ? kExitOk
+                     : stats.report.failed ? kExitError
+                                           : kExitInterrupted;
+    if (job.render.ranks && code != kExitOk)
+        end_all_ranks(*job.render.ranks, code);
+    return code;
 }
 
 } // namespace ovc

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The two signal handlers. A signal can only reach the program through variables of static
+// The two handlers of signals. A signal can only reach the program through variables of static
 // lifetime.
 #include "host/terminal/interrupt.h"
 
@@ -43,6 +43,7 @@ static void remember(int) {
     const int errno_before = errno;
     interrupt_seen = 1;
     std::signal(SIGINT, leave);
+    std::signal(SIGTERM, leave);
     say("overcast: interrupted; ");
     say_on(doing_now);
     say_on(" (press again to give up)\n");
@@ -52,6 +53,7 @@ static void remember(int) {
 void exit_on_interrupt() {
     on_terminal = isatty(STDERR_FILENO);
     std::signal(SIGINT, leave);
+    std::signal(SIGTERM, leave);
 }
 
 InterruptGuard::InterruptGuard(const char* doing) : outer_(std::exchange(doing_now, doing)) {
@@ -60,6 +62,7 @@ InterruptGuard::InterruptGuard(const char* doing) : outer_(std::exchange(doing_n
     interrupt_seen = 0;
     on_terminal = isatty(STDERR_FILENO);
     std::signal(SIGINT, remember);
+    std::signal(SIGTERM, remember);
 }
 
 InterruptGuard::~InterruptGuard() {

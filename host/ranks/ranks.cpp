@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reaches the table of plugin/overcast_ranks.h by dlopen, so that the command needs no MPI.
+#include "host/ranks/ranks.h"
+
+#include "host/backend/plugin_loader.h"
+#include "plugin/overcast_ranks.h"
+
+#include <dlfcn.h>
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+
+namespace ovc {
+
+static std::unique_ptr<const Ranks>& ranks_of_run() {
+    static std::unique_ptr<const Ranks> ranks;
+    return ranks;
+}
+
+bool Ranks::are_there() {
+    // Set by the starters of Open MPI, of MPICH and its kin, and of PMIx.
+    for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE"})
+        if (const char* size = std::getenv(name))
+            return std::atoi(size) > 1;
+    return false;
+}
+
+Result<Done> Ranks::open(double timeout_seconds) {
+    if (!are_there() || ranks_of_run())
+        return Done{};
+    const std::string path = find_plugin(kRankedProduct);
+    void* const library = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
+    if (!library)
+        return Error{fmt::format("several processes need {}, which cannot be loaded: {}; it is built "
+                                 "where MPI is installed (docs/guide/ranks.md)",
+                                 kRankedProduct, dlerror())};
+    const auto get = reinterpret_cast<ovc_get_ranks_function>(dlsym(library, "ovc_get_ranks"));
+    const ovc_ranks* const table = get ? get(timeout_seconds) : nullptr;
+    if (!table)
+        return Error{fmt::format("MPI cannot be started by '{}'", path)};
+    ranks_of_run().reset(new Ranks(*table));
+    return Done{};
+}
+
+const Ranks* Ranks::of_run() {
+    return ranks_of_run().get();
+}
+
+uint32_t Ranks::rank() const {
+    return table_.rank;
+}
+
+uint32_t Ranks::count() const {
+    return table_.ranks;
+}
+
+std::string Ranks::name_of(uint32_t rank) const {
+    return table_.name_of(rank);
+}
+
+namespace {
+
+/// What the functions of a call refer to.
+struct Call {
+    const GoesOn& goes_on;
+    std::vector<RankBytes> taken;
+
+    static void take(void* user, uint32_t, const void* bytes, size_t size) {
+        const auto* const first = static_cast<const std::byte*>(bytes);
+        static_cast<Call*>(user)->taken.emplace_back(first, first + size);
+    }
+    static int wait(void* user) { return static_cast<Call*>(user)->goes_on() ? 0 : 1; }
+};
+
+} // namespace
+
+static Error error_of(const ovc_ranks& table, ovc_result result) {
+    return {table.last_error(),
+            result == OVC_ERROR_CANCELLED ? ErrorKind::Cancelled : ErrorKind::Other};
+}
+
+Result<std::vector<RankBytes>> Ranks::gather(std::span<const std::byte> mine,
+                                             const GoesOn& goes_on) const {
+    Call call{goes_on, {}};
+    if (const ovc_result result =
+            table_.gather(mine.data(), mine.size(), Call::take, Call::wait, &call);
+        result != OVC_OK)
+        return error_of(table_, result);
+    return std::move(call.taken);
+}
+
+Result<RankBytes> Ranks::spread(std::span<const std::byte> of_first, const GoesOn& goes_on) const {
+    Call call{goes_on, {}};
+    if (const ovc_result result =
+            table_.spread(of_first.data(), of_first.size(), Call::take, Call::wait, &call);
+        result != OVC_OK)
+        return error_of(table_, result);
+    return std::move(call.taken.front());
+}
+
+void Ranks::end_all(int code) const {
+    std::fflush(nullptr);
+    table_.abort(code);
+    std::_Exit(code); // abort() does not return
+}
+
+} // namespace ovc

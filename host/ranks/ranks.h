@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// Ranks: the processes that mpirun has started to do one command's work together.
+#pragma once
+
+#include "core/result.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+struct ovc_ranks;
+
+namespace ovc {
+
+/// The library that has the ABI of the product for scenes of several ranks, and the ranks.
+inline constexpr const char* kRankedProduct = "libovercast-mpi.so";
+
+using RankBytes = std::vector<std::byte>;
+
+/// Asked some twenty times a second while something is waited for; false: no longer.
+using GoesOn = std::function<bool()>;
+
+class Ranks {
+public:
+    /// Whether mpirun, or what does its work, has started this process among several.
+    static bool are_there();
+    /// Loads the library and starts MPI, where are_there(). All processes call it.
+    /// timeout_seconds: a rank that gives no word for so long is lost; 0: 60.
+    static Result<Done> open(double timeout_seconds);
+    /// Returns the ranks after open(); null for a process that is alone.
+    static const Ranks* of_run();
+
+    uint32_t rank() const;
+    uint32_t count() const;
+    bool is_first() const { return rank() == 0; }
+    std::string name_of(uint32_t rank) const;
+
+    /// Brings the bytes of all ranks, which all call this, to rank 0, in their order; the others
+    /// return at once, with nothing. Error of the kind Cancelled: it was not waited for. Error: a
+    /// rank is lost.
+    Result<std::vector<RankBytes>> gather(std::span<const std::byte> mine,
+                                          const GoesOn& goes_on) const;
+    /// Brings the bytes of rank 0 to all ranks, which all call this. Errors as of gather().
+    Result<RankBytes> spread(std::span<const std::byte> of_first, const GoesOn& goes_on) const;
+    /// Ends all processes at once, with this exit code.
+    [[noreturn]] void end_all(int code) const;
+
+private:
+    explicit Ranks(const ovc_ranks& table) : table_(table) {}
+
+    const ovc_ranks& table_;
+};
+
+} // namespace ovc

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// A film whose pixels are shared out between ranks.
+#pragma once
+
+#include "host/film/film.h"
+#include "host/ranks/ranks.h"
+#include "host/render/render.h"
+
+#include <functional>
+
+namespace ovc {
+
+/// Renders the pixels of the part that are not done.
+using RenderPart = std::function<Result<RenderReport>(const RenderObserver&, Film& part)>;
+
+/// Marks the pixels that are done on the film of rank 0 on all films. All ranks call it.
+Result<Done> spread_film(const Ranks& ranks, Film& film);
+
+/// Renders the pixels of the film that are not done, each on one rank; all ranks call it, with films
+/// on which the same pixels are done. That of rank 0 has all of them afterwards; with to_all the
+/// others' have too. Where it is stopped, or a rank is lost or fails, rank 0 has those that have
+/// come, and the report is not complete. Sums of light do not depend on who adds them, so the bits
+/// are those of one rank.
+Result<RenderReport> render_shared(const Ranks& ranks, Film& film, bool to_all,
+                                   const RenderPart& render, const RenderObserver& observe);
+
+} // namespace ovc
