@@ -72,11 +72,7 @@ void BackendArguments::add_to(CLI::App& app, const char* host_memory_help) {
     app.add_option("--kernel", kernel, "auto, fragment or compute; they answer alike")
         ->group(group)
         ->type_name(choice_names(kKernels));
-    app.add_option("--ranks-own", ranks_own,
-                   "Under mpirun, which leaves each rank has: auto (all where they fit, else a "
-                   "share), share or all")
-        ->group(group)
-        ->type_name(choice_names(kRanksOwn));
+    add_ranks_own(app, ranks_own)->group(group);
     app.add_option("--rank-timeout", rank_timeout,
                    "Under mpirun, a rank that gives no word for so long is lost, and the job ends; "
                    "default: 60")
@@ -117,24 +113,43 @@ Result<Done> BackendArguments::check_meaning(BackendKind kind) const {
     return Done{};
 }
 
-Result<Done> BackendArguments::resolve_ranks(BackendOptions& options) const {
-    const Result<size_t> own = parse_choice("--ranks-own", ranks_own, kRanksOwn);
+/// An error where an option for several ranks is given to a process that is alone.
+static Result<Done> check_ranks(const char* option, std::string_view text) {
+    if (text.empty() || Ranks::are_there())
+        return Done{};
+    return Error{fmt::format("{} is for several processes, which this is not: mpirun -n 4 overcast "
+                             "starts four",
+                             option)};
+}
+
+Result<ovc_ranks_own> parse_ranks_own(std::string_view text) {
+    const Result<size_t> own = parse_choice("--ranks-own", text, kRanksOwn);
     if (!own)
         return own.error();
-    options.ranks_own = ovc_ranks_own(*own);
-    if (!rank_timeout.empty()) {
-        const Result<double> seconds = parse_real("--rank-timeout", rank_timeout, 0.1, 1e6);
-        if (!seconds)
-            return seconds.error();
-        options.rank_timeout = *seconds;
-    }
-    for (const auto& [option, value] :
-         {std::pair{"--ranks-own", &ranks_own}, {"--rank-timeout", &rank_timeout}})
-        if (!value->empty() && !Ranks::are_there())
-            return Error{fmt::format("{} is for several processes, which this is not: mpirun -n 4 "
-                                     "overcast starts four",
-                                     option)};
-    return Done{};
+    const Result<Done> fine = check_ranks("--ranks-own", text);
+    return fine ? Result<ovc_ranks_own>(ovc_ranks_own(*own)) : fine.error();
+}
+
+CLI::Option* add_ranks_own(CLI::App& app, std::string& text) {
+    return app
+        .add_option("--ranks-own", text,
+                    "Under mpirun, which leaves each rank has: auto (all where they fit, else a "
+                    "share), share or all")
+        ->type_name(choice_names(kRanksOwn));
+}
+
+Result<Done> BackendArguments::resolve_ranks(BackendOptions& options) const {
+    const Result<ovc_ranks_own> own = parse_ranks_own(ranks_own);
+    if (!own)
+        return own.error();
+    options.ranks_own = *own;
+    if (rank_timeout.empty())
+        return Done{};
+    const Result<double> seconds = parse_real("--rank-timeout", rank_timeout, 0.1, 1e6);
+    if (!seconds)
+        return seconds.error();
+    options.rank_timeout = *seconds;
+    return check_ranks("--rank-timeout", rank_timeout);
 }
 
 Result<BackendOptions> BackendArguments::resolve() const {

@@ -17,6 +17,13 @@ namespace ovc {
 /// Returns the backend of that name. Error: lists the backends, with the one probably meant.
 Result<BackendKind> parse_backend(std::string_view name);
 
+/// Parses --ranks-own; an empty text is auto. Error: an unknown word, or one for a process that is
+/// alone.
+Result<ovc_ranks_own> parse_ranks_own(std::string_view text);
+
+/// Adds --ranks-own.
+CLI::Option* add_ranks_own(CLI::App& app, std::string& text);
+
 /// The options as the user wrote them; empty where not given.
 struct BackendArguments {
     std::string backend = "auto";

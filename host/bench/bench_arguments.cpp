@@ -3,6 +3,7 @@
 #include "host/bench/bench_arguments.h"
 
 #include "core/text/suggestion.h"
+#include "host/arguments/backend_arguments.h"
 #include "host/output/output.h"
 #include "testscenes/catalog.h"
 
@@ -99,6 +100,7 @@ void BenchWords::add_settings_to(CLI::App& app) {
         ->excludes(memory);
     app.add_option("--device", device, "A number or a part of a name from `overcast devices`")
         ->type_name("NAME");
+    add_ranks_own(app, ranks_own);
     app.add_option("--json", json,
                    "Also write what was measured as JSON (docs/benchmarks.md); -: to standard "
                    "output, instead of the tables")
@@ -296,6 +298,10 @@ Result<BenchJob> understand_bench(const BenchWords& words) {
     job.scenes = words.scenes.empty() ? std::vector<std::string>{kDefaultScene} : words.scenes;
     job.scene_alone = words.scene_alone;
     job.device = words.device;
+    const Result<ovc_ranks_own> own = parse_ranks_own(words.ranks_own);
+    if (!own)
+        return own.error();
+    job.ranks_own = *own;
     job.json = words.json;
     const std::string size_words = !words.size.empty()               ? words.size
                                    : job.kind == BenchKind::Programs ? "512x512"

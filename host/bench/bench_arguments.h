@@ -34,6 +34,7 @@ struct BenchWords {
     std::string gpu_memory;
     std::string resident;
     std::string device;
+    std::string ranks_own;
     std::string json;
 
     void add_to(CLI::App& app);
@@ -55,6 +56,7 @@ struct BenchJob {
     uint32_t repeats = 5;
     std::vector<Contender> contenders;
     std::string device;
+    ovc_ranks_own ranks_own = OVC_RANKS_OWN_AUTO;
     std::string json; // a file, "-" for standard output, or empty
 };
 

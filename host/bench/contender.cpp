@@ -149,6 +149,7 @@ Result<std::unique_ptr<Backend>> ContenderBuilder::build_on_gpu(const Contender&
     options.kernel = contender.kernel;
     options.leaves = contender.leaves.leaves;
     options.gpu_memory = contender.budget.memory;
+    options.ranks_own = ranks_own_;
     if (contender.budget.pages_share > 0) {
         const Result<uint64_t> bytes = all_pages_bytes(options);
         if (!bytes)

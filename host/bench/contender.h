@@ -65,6 +65,8 @@ public:
     ContenderBuilder(const Soup& soup, const KdTree* tree, double tree_seconds, std::string device,
                      LogSink log);
     Result<std::unique_ptr<Backend>> build(const Contender& contender);
+    /// Says which leaves ranks have of scenes that are built from now on.
+    void set_ranks_own(ovc_ranks_own own) { ranks_own_ = own; }
 
 private:
     Result<std::unique_ptr<Backend>> build_on_gpu(const Contender& contender);
@@ -75,6 +77,7 @@ private:
     double tree_seconds_;
     std::string device_;
     LogSink log_;
+    ovc_ranks_own ranks_own_ = OVC_RANKS_OWN_AUTO;
     std::map<uint32_t, uint64_t> pages_bytes_; // by leaves
 };
 

@@ -6,6 +6,7 @@
 #include "core/system/stopwatch.h"
 #include "host/bench/ray_sets.h"
 #include "host/camera/camera.h"
+#include "host/ranks/shared_calls.h"
 #include "host/scene/scene_source.h"
 #include "host/scene/scene_summary.h"
 #include "host/shade/shade.h"
@@ -101,17 +102,39 @@ Reference make_reference(const SceneBench& job, const Soup& soup, const BenchSur
     return reference;
 }
 
+/// Builds the contenders that rank 0 builds, in the same order, and answers for them.
+Result<Done> serve_bench(const SceneBench& job, const Scene& scene,
+                         const BenchSurroundings& around) {
+    ContenderBuilder builder(scene.soup, nullptr, 0, job.device, around.log);
+    builder.set_ranks_own(job.ranks_own);
+    std::vector<std::unique_ptr<Backend>> backends;
+    for (const Contender& contender : job.contenders) {
+        Result<std::unique_ptr<Backend>> backend =
+            contender.on_gpu() ? builder.build(contender) : std::unique_ptr<Backend>();
+        if (!backend)
+            return backend.error();
+        backends.push_back(std::move(*backend));
+    }
+    return serve_calls(*Ranks::of_run(), backends);
+}
+
 /// Builds the reference and the contenders over the scene and runs them.
 Result<Done> bench_soup(const SceneBench& job, const Scene& scene, const Camera& camera,
                         const BenchSurroundings& around, BenchResult& result) {
     const Reference reference = make_reference(job, scene.soup, around);
     ContenderBuilder builder(scene.soup, reference.tree.get(), reference.tree_seconds, job.device,
                              around.log);
+    builder.set_ranks_own(job.ranks_own);
     Result<std::vector<Entrant>> entrants = build_entrants(job, builder, around);
     if (!entrants)
         return entrants.error();
     if (entrants->empty())
         return Done{}; // it was stopped
+    const Ranks* const ranks = Ranks::of_run();
+    for (size_t i = 0; ranks && i < entrants->size(); ++i)
+        if (Entrant& entrant = (*entrants)[i]; entrant.contender.on_gpu())
+            entrant.backend =
+                make_shared_backend(*ranks, std::move(entrant.backend), uint32_t(i));
     Backend& judge = reference.backend ? *reference.backend : *entrants->front().backend;
     Result<std::vector<Workload>> workloads =
         workloads_of(scene, camera, job.asked, judge, around.stop);
@@ -124,7 +147,7 @@ Result<Done> bench_soup(const SceneBench& job, const Scene& scene, const Camera&
     const Result<Done> done =
         run_contenders(*entrants, *workloads, judge, job.repeats, around.stop, observe, result);
     result.load_after = load_average();
-    return done;
+    return done && ranks ? end_calls(*ranks) : done;
 }
 
 } // namespace
@@ -143,6 +166,11 @@ Result<BenchResult> bench_scene(const SceneBench& job, const BenchSurroundings& 
     result.seconds_import = import.seconds();
     result.triangles = scene->soup.triangle_count();
     const Result<Camera> camera = dress(*scene, job.asked.size);
+    const Ranks* const ranks = Ranks::of_run();
+    if (ranks && !ranks->is_first()) {
+        const Result<Done> served = serve_bench(job, *scene, around);
+        return served ? Result<BenchResult>(std::move(result)) : served.error();
+    }
     const Result<Done> done =
         camera ? bench_soup(job, *scene, *camera, around, result) : camera.error();
     if (!done)

@@ -32,6 +32,7 @@ struct SceneBench {
     uint32_t repeats = 5;
     std::vector<Contender> contenders;
     std::string device;
+    ovc_ranks_own ranks_own = OVC_RANKS_OWN_AUTO; // where there are several ranks
     /// The first contender is the reference, instead of the CPU KDT, which takes minutes to build
     /// over tens of millions of triangles.
     bool first_is_reference = false;

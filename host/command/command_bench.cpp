@@ -12,6 +12,7 @@
 #include "host/bench/sweep.h"
 #include "host/command/command.h"
 #include "host/output/output.h"
+#include "host/ranks/ranks.h"
 #include "host/scene/scene_source.h"
 #include "host/terminal/interrupt.h"
 #include "host/terminal/message.h"
@@ -101,12 +102,20 @@ Result<Done> bench_contenders(const BenchJob& job, const BenchSurroundings& arou
         bench.repeats = job.repeats;
         bench.contenders = job.contenders;
         bench.device = job.device;
+        bench.ranks_own = job.ranks_own;
+        const Ranks* const ranks = Ranks::of_run();
+        if (ranks)
+            bench.asked.frame = false; // its calls are more than plain rays
         Result<BenchResult> result = bench_scene(bench, around);
         if (!result)
             return result.error();
+        if (ranks && !ranks->is_first())
+            continue;
         show(job, (results.empty() ? "" : "\n") + bench_table(*result));
         results.push_back(std::move(*result));
     }
+    if (const Ranks* const ranks = Ranks::of_run(); ranks && !ranks->is_first())
+        return Done{};
     if (const Result<Done> saved = save(job, bench_json(results)); !saved)
         return saved;
     for (const BenchResult& result : results)
@@ -219,7 +228,13 @@ public:
         const Result<BenchJob> job = understand_bench(words_);
         if (!job)
             return job.error();
-        return bench(*job, *level);
+        if (Ranks::are_there() && job->kind != BenchKind::Contenders)
+            return Error{"of the tables of bench, several processes share the work of contenders "
+                         "alone"};
+        if (const Result<Done> opened = Ranks::open(/* timeout_seconds= */ 0); !opened)
+            return opened.error();
+        const Ranks* const ranks = Ranks::of_run();
+        return bench(*job, ranks && !ranks->is_first() ? LogLevel::Error : *level);
     }
 
 private:

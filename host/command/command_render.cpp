@@ -7,7 +7,7 @@
 #include "host/camera/camera.h"
 #include "host/camera/camera_path_file.h"
 #include "host/command/command.h"
-#include "host/ranks/ranks.h"
+#include "host/ranks/join_ranks.h"
 #include "host/render/frames.h"
 #include "host/render/render_job.h"
 #include "host/terminal/interrupt.h"
@@ -528,33 +528,15 @@ static Result<RenderJob> understand(const RenderWords& words) {
     return job;
 }
 
-/// Lets a rank that has a share of a scene file read no more than that share.
-static void reads_from_disk(RenderJob& job) {
-    constexpr uint64_t kNoLimit = uint64_t(1) << 60;
-    const auto& scenes = job.scene.scenes;
-    if (job.backend.ranks_own != OVC_RANKS_OWN_SHARE || job.scene.on_disk || scenes.size() != 1 ||
-        fs::path(scenes[0]).extension() != ".ovc")
-        return;
-    job.scene.on_disk = true;
-    job.backend.host_bytes = kNoLimit;
-}
-
 /// Makes this process one of several where mpirun has started them. The first one speaks for all.
 static Result<Done> join_ranks(RenderJob& job) {
-    if (const Result<Done> done = Ranks::open(job.backend.rank_timeout); !done)
+    if (const Result<Done> done = join_ranks(job.backend, job.scene); !done)
         return done;
     job.render.ranks = Ranks::of_run();
-    if (!job.render.ranks)
-        return Done{};
-    if (structure_of(job.backend.kind) != OVC_STRUCTURE_TWO_LEVEL ||
-        (job.backend.kind != BackendKind::Auto && job.backend.kind != BackendKind::TwoLevel))
-        return Error{"several processes share the work of --backend two-level alone"};
-    job.backend.kind = BackendKind::TwoLevel;
-    if (!job.render.ranks->is_first()) {
+    if (job.render.ranks && !job.render.ranks->is_first()) {
         job.quiet = true;
         job.log_level = LogLevel::Error;
     }
-    reads_from_disk(job);
     return Done{};
 }
 

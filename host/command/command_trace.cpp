@@ -7,6 +7,8 @@
 #include "host/backend/device_opening.h"
 #include "host/backend/trace_stream.h"
 #include "host/command/command.h"
+#include "host/ranks/join_ranks.h"
+#include "host/ranks/shared_calls.h"
 #include "host/scene/scene_source.h"
 #include "host/terminal/interrupt.h"
 
@@ -57,7 +59,10 @@ public:
             return backend_options.error();
         if (const Result<Done> fine = source_.check(); !fine)
             return fine.error();
-        const LogSink log = standard_error_log(*level);
+        if (const Result<Done> joined = join_ranks(*backend_options, source_); !joined)
+            return joined.error();
+        const Ranks* const ranks = Ranks::of_run();
+        const LogSink log = standard_error_log(ranks && !ranks->is_first() ? LogLevel::Error : *level);
         use_wide_vectors(*backend_options);
         DeviceOpening opening(*backend_options);
         source_.on_disk = backend_options->host_bytes > 0;
@@ -66,17 +71,25 @@ public:
             return scene.error();
         backend_options->saved = scene->saved;
         backend_options->on_disk = scene->on_disk.get();
-        const Result<std::unique_ptr<Backend>> backend =
+        Result<std::unique_ptr<Backend>> backend =
             make_backend(scene->soup, *backend_options, log, opening);
         if (!backend)
             return backend.error();
+        if (ranks && !ranks->is_first()) {
+            const Result<Done> done = serve_calls(*ranks, {&*backend, 1});
+            return done ? Result<int>(kExitOk) : done.error();
+        }
+        if (ranks)
+            backend = make_shared_backend(*ranks, std::move(*backend), 0);
         if (isatty(STDIN_FILENO))
             say(log, LogLevel::Info,
                 options_.binary
                     ? "reading rays from the terminal, 64 bytes each; Ctrl-D ends them"
                     : "reading rays from the terminal, one a line: ox oy oz dx dy dz [tmin tmax]; "
                       "Ctrl-D ends them");
-        const Result<Done> done = trace_stream(**backend, STDIN_FILENO, STDOUT_FILENO, options_);
+        Result<Done> done = trace_stream(**backend, STDIN_FILENO, STDOUT_FILENO, options_);
+        if (done && ranks)
+            done = end_calls(*ranks);
         if (!done)
             return done.error();
         return kExitOk;

@@ -63,15 +63,15 @@ std::string Ranks::name_of(uint32_t rank) const {
 namespace {
 
 /// What the functions of a call refer to.
-struct Call {
+struct Waiting {
     const GoesOn& goes_on;
     std::vector<RankBytes> taken;
 
     static void take(void* user, uint32_t, const void* bytes, size_t size) {
         const auto* const first = static_cast<const std::byte*>(bytes);
-        static_cast<Call*>(user)->taken.emplace_back(first, first + size);
+        static_cast<Waiting*>(user)->taken.emplace_back(first, first + size);
     }
-    static int wait(void* user) { return static_cast<Call*>(user)->goes_on() ? 0 : 1; }
+    static int wait(void* user) { return static_cast<Waiting*>(user)->goes_on() ? 0 : 1; }
 };
 
 } // namespace
@@ -83,18 +83,18 @@ static Error error_of(const ovc_ranks& table, ovc_result result) {
 
 Result<std::vector<RankBytes>> Ranks::gather(std::span<const std::byte> mine,
                                              const GoesOn& goes_on) const {
-    Call call{goes_on, {}};
+    Waiting call{goes_on, {}};
     if (const ovc_result result =
-            table_.gather(mine.data(), mine.size(), Call::take, Call::wait, &call);
+            table_.gather(mine.data(), mine.size(), Waiting::take, Waiting::wait, &call);
         result != OVC_OK)
         return error_of(table_, result);
     return std::move(call.taken);
 }
 
 Result<RankBytes> Ranks::spread(std::span<const std::byte> of_first, const GoesOn& goes_on) const {
-    Call call{goes_on, {}};
+    Waiting call{goes_on, {}};
     if (const ovc_result result =
-            table_.spread(of_first.data(), of_first.size(), Call::take, Call::wait, &call);
+            table_.spread(of_first.data(), of_first.size(), Waiting::take, Waiting::wait, &call);
         result != OVC_OK)
         return error_of(table_, result);
     return std::move(call.taken.front());

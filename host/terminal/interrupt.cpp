@@ -19,7 +19,11 @@ static volatile std::sig_atomic_t interrupt_seen = 0;
 /// On a terminal, a progress line or ^C may stand before the message, which then begins a new line.
 static volatile std::sig_atomic_t on_terminal = 0;
 
+static volatile std::sig_atomic_t silent = 0;
+
 static void say_on(std::string_view text) {
+    if (silent)
+        return;
     // Nothing can be done about a failed write here.
     [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, text.data(), text.size());
 }
@@ -48,6 +52,10 @@ static void remember(int) {
     say_on(doing_now);
     say_on(" (press again to give up)\n");
     errno = errno_before;
+}
+
+void say_nothing_on_interrupt() {
+    silent = 1;
 }
 
 void exit_on_interrupt() {

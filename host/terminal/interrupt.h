@@ -13,6 +13,9 @@ inline constexpr int kExitInterrupted = 2;
 /// whole, and the one being written is removed, so nothing half done remains.
 void exit_on_interrupt();
 
+/// Leaves the messages to another process, which gets the signals too.
+void say_nothing_on_interrupt();
+
 /// While a guard lives, the first of them only prints a message with what the program does about it,
 /// and sets interrupted(); a second one exits as above. Guards may lie within each other: the inner
 /// one says what is done, and all of them are interrupted.
