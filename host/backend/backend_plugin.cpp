@@ -8,6 +8,7 @@
 #include "host/ranks/ranks.h"
 #include "host/scene/soup_difference.h"
 #include "host/terminal/build_watch.h"
+#include "host/terminal/interrupt.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -231,6 +232,7 @@ public:
         assert(hits.size() == rays.size() && without.are_for(rays.size()));
         const LibraryQuery asked(numbers_, without);
         ovc_query query = asked.query();
+        ends_early(query);
         query.leaf = notes.leaf.empty() ? nullptr : notes.leaf.data();
         query.passes = notes.passes.empty() ? nullptr : notes.passes.data();
         query.flagged = notes.flagged.empty() ? nullptr : notes.flagged.data();
@@ -246,7 +248,8 @@ public:
                           std::span<uint8_t> occluded) override {
         assert(occluded.size() == rays.size() && without.are_for(rays.size()));
         const LibraryQuery asked(numbers_, without);
-        const ovc_query query = asked.query();
+        ovc_query query = asked.query();
+        ends_early(query);
         return device_.checked(
             api().occluded(scene_.get(), as_abi(rays), rays.size(), occluded.data(), &query));
     }
@@ -299,6 +302,12 @@ public:
 
 private:
     const ovc_api& api() const { return *device_.api(); }
+
+    /// Among ranks, a call may wait for one that has ended; and then there is no time to lose.
+    static void ends_early(ovc_query& query) {
+        if (Ranks::of_run())
+            query.progress = [](void*, double, const char*) { return is_interrupted() ? 1 : 0; };
+    }
 
     /// Tells the library what has changed in the soup.
     Result<Done> tell(const Soup& soup, const SoupDifference& difference) {

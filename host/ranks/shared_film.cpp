@@ -12,7 +12,7 @@ namespace ovc {
 namespace {
 
 /// A round has about so many camera rays a rank: more of them move fewer pages under a budget.
-constexpr uint64_t kRoundRays = uint64_t(1) << 20;
+constexpr uint64_t kRoundRays = uint64_t(1) << 18;
 constexpr uint64_t kMaxRounds = 64;
 
 /// Deals pixels out in tiles, so that neighbours' rays stay together and all ranks have about as

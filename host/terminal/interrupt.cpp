@@ -79,8 +79,12 @@ InterruptGuard::~InterruptGuard() {
     doing_now = outer_;
 }
 
-bool InterruptGuard::interrupted() const {
+bool is_interrupted() {
     return interrupt_seen != 0;
+}
+
+bool InterruptGuard::interrupted() const {
+    return is_interrupted();
 }
 
 } // namespace ovc

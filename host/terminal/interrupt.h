@@ -13,6 +13,9 @@ inline constexpr int kExitInterrupted = 2;
 /// whole, and the one being written is removed, so nothing half done remains.
 void exit_on_interrupt();
 
+/// Whether the signal has come while a guard lives.
+bool is_interrupted();
+
 /// Leaves the messages to another process, which gets the signals too.
 void say_nothing_on_interrupt();
 

@@ -1,0 +1,218 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Renders and traces with several ranks under mpirun: the bits of one process, whatever they share;
+and where a rank is killed or hangs, a sentence, an end, and a film that goes on to the same bytes.
+
+usage: ranks.py OVERCAST            some of it, for the gate
+       ranks.py OVERCAST --all      1, 2, 3, 4, 8 ranks, four scenes, shared or not, two budgets
+       ranks.py OVERCAST --kills N  a rank is killed at N random moments
+       ranks.py OVERCAST --cost     speed and memory of 2 ranks of a thread against 1 of two
+       ranks.py EXAMPLE --example LIBRARY   the C example with 1, 2 and 3 ranks
+"""
+import filecmp
+import json
+import os
+import pathlib
+import random
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+MPIRUN = ["mpirun", "--oversubscribe", "--bind-to", "none"]
+ENVIRONMENT = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
+                   OMPI_MCA_mpi_yield_when_idle="1")
+PATH_BOX = ["box", "--integrator", "path"]
+
+
+def fail(what):
+    sys.exit(f"ranks.py: {what}")
+
+
+def run(ranks, command, wanted=0, **options):
+    """Runs a command on so many ranks, 0 for a process without mpirun."""
+    started = MPIRUN + ["-n", str(ranks)] if ranks else []
+    done = subprocess.run(started + command, capture_output=True, text=True, env=ENVIRONMENT,
+                          timeout=600, **options)
+    if wanted is not None and done.returncode != wanted:
+        fail(f"{' '.join(command)} on {ranks} ranks: exit {done.returncode}, expected {wanted}\n"
+             f"{done.stderr}")
+    return done
+
+
+def same(a, b, what):
+    if not filecmp.cmp(a, b, shallow=False):
+        fail(f"{what}: the picture is another")
+
+
+def compare_pictures(overcast, folder, scenes, counts, budgets):
+    """Each scene on so many ranks, shared out and not, under each budget."""
+    for number, scene in enumerate(scenes):
+        render = [overcast, "render", *scene, "-q"]
+        alone = folder / f"{number}.png"
+        run(0, render + ["-o", str(alone)])
+        for ranks in counts:
+            for own in ("share", "all"):
+                for budget in budgets:
+                    picture = folder / "ranks.png"
+                    run(ranks, render + ["-o", str(picture), "--ranks-own", own] + budget)
+                    what = f"{scene[0]}, {ranks} ranks, {own} {' '.join(budget)}"
+                    same(alone, picture, what)
+                    print(f"same: {what}", flush=True)
+
+
+def compare_hits(overcast, folder, scene, counts):
+    """Hits of random rays, from the scene and from a file of it that every rank reads in part."""
+    random.seed(5)
+    rays = "".join(" ".join(str(random.uniform(-20, 20)) for _ in range(6)) + "\n"
+                   for _ in range(5000))
+    whole = run(0, [overcast, "trace", scene], input=rays).stdout
+    stored = folder / "scene.ovc"
+    run(0, [overcast, "convert", scene, str(stored), "--leaves", "40"])
+    for ranks in counts:
+        for source in (scene, str(stored)):
+            for own in ("share", "all"):
+                hits = run(ranks, [overcast, "trace", source, "--ranks-own", own],
+                           input=rays).stdout
+                if hits != whole:
+                    fail(f"{source}, {ranks} ranks, {own}: hits differ")
+        print(f"same: hits of {scene} and of its file, {ranks} ranks", flush=True)
+
+
+def processes_of(word):
+    """Returns the ids of the processes whose command line has the word, but for mpirun's."""
+    found = []
+    for entry in pathlib.Path("/proc").iterdir():
+        if not entry.name.isdigit():
+            continue
+        try:
+            line = (entry / "cmdline").read_bytes().decode(errors="replace").split("\0")
+        except OSError:
+            continue
+        if word in line and pathlib.Path(line[0]).name.startswith("overcast"):
+            found.append(int(entry.name))
+    return sorted(found)
+
+
+def end_by_force(overcast, folder, whole, deadly, ranks, seconds, scene):
+    """Kills or stops a rank after so many seconds. Returns whether it came to that."""
+    picture = folder / "killed.png"
+    for left in folder.glob("killed*"):
+        left.unlink()
+    render = [overcast, "render", *scene, "-q", "-o", str(picture)]
+    job = subprocess.Popen(MPIRUN + ["-n", str(ranks)] + render +
+                           ["--ranks-own", "share", "--rank-timeout", "3"],
+                           stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
+                           env=ENVIRONMENT)
+    time.sleep(seconds)
+    those = processes_of(str(picture))
+    if len(those) < ranks or job.poll() is not None:
+        job.communicate()
+        return False
+    victim = random.choice(those)
+    os.kill(victim, deadly)
+    begun = time.monotonic()
+    try:
+        _, said = job.communicate(timeout=30)
+    except subprocess.TimeoutExpired:
+        fail(f"a rank got signal {deadly} after {seconds:.2f} s, and 30 s later the job is there")
+    took = time.monotonic() - begun
+    if picture.exists():  # it was done already
+        same(whole, picture, f"signal {deadly} after {seconds:.2f} s")
+        return False
+    if job.returncode == 0 or took > 10 + (3 if deadly == signal.SIGSTOP else 0):
+        fail(f"signal {deadly}: exit {job.returncode} after {took:.1f} s\n{said}")
+    if not re.search(r"rank \d+ .*(on node|on|has given no word)", said):
+        fail(f"signal {deadly}: no sentence names the rank\n{said}")
+    film = folder / "killed.unfinished.film"
+    kept = film.exists()
+    run(random.choice([0, 2, 4]), render + ["--continue"])
+    same(whole, picture, f"continued after signal {deadly} at {seconds:.2f} s, film {kept}")
+    print(f"signal {deadly} after {seconds:.2f} s: ended in {took:.1f} s, "
+          f"{'went on with its film' if kept else 'nothing was saved'}", flush=True)
+    return True
+
+
+def kill_ranks(overcast, folder, count, scene):
+    whole = folder / "whole.png"
+    begun = time.monotonic()
+    run(3, [overcast, "render", *scene, "-q", "-o", str(whole), "--ranks-own", "share"])
+    length = time.monotonic() - begun
+    done = 0
+    while done < count:
+        deadly = signal.SIGSTOP if done % 10 == 9 else signal.SIGKILL
+        done += end_by_force(overcast, folder, whole, deadly, random.choice([2, 3, 4]),
+                             random.uniform(0.3, length), scene)
+    print(f"{done} ranks killed or stopped: each job has ended, and each picture is the same")
+
+
+def measure(overcast, folder):
+    """Prints speed and memory of ranks against one process."""
+    for name, size in (("dragons-10", "1024x768"), ("plants-10", "1024x768")):
+        stored = folder / f"{name}.ovc"
+        run(0, [overcast, "convert", name, str(stored), "--leaves", "100"])
+        stats = folder / "stats.json"
+        seconds, peaks = {}, {}
+        for label, ranks, more in (("alone", 0, ["--threads", "2"]),
+                                   ("share", 2, ["--threads", "1", "--ranks-own", "share"]),
+                                   ("all", 2, ["--threads", "1", "--ranks-own", "all"])):
+            for _ in range(3):
+                run(ranks, [overcast, "render", str(stored), "-q", "--size", size, "-o",
+                            str(folder / f"{label}.png"), "--stats", str(stats), *more])
+                told = json.loads(stats.read_text())
+                seconds.setdefault(label, []).append(told["time"]["render"])
+            of_ranks = told["of_ranks"] or [told]
+            peaks[label] = [max(r[k] for r in of_ranks)
+                            for k in ("host_peak_bytes", "gpu_peak_bytes")]
+            same(folder / "alone.png", folder / f"{label}.png", f"{name}, {label}")
+        best = {label: min(of) for label, of in seconds.items()}
+        print(f"{name}: alone {best['alone']:.2f} s; speed shared "
+              f"{best['alone'] / best['share']:.2f}, replicated "
+              f"{best['alone'] / best['all']:.2f}; host and GPU MiB at most: " +
+              ", ".join(f"{label} {p[0] / 2**20:.0f} {p[1] / 2**20:.0f}"
+                        for label, p in peaks.items()), flush=True)
+
+
+def compare_example(example, library):
+    pictures = [run(ranks, [example, library]).stdout for ranks in (1, 2, 3)]
+    if not pictures[0].strip() or any(p != pictures[0] for p in pictures):
+        fail(f"the example draws other pictures on other numbers of ranks\n{pictures[0]}")
+    print("same: the example's picture on 1, 2 and 3 ranks")
+
+
+def main():
+    overcast, *mode = sys.argv[1:]
+    if not shutil.which("mpirun"):
+        print("mpirun is not installed")
+        return 77
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        if mode[:1] == ["--example"]:
+            compare_example(overcast, mode[1])
+        elif mode[:1] == ["--kills"]:
+            kill_ranks(overcast, folder, int(mode[1]),
+                       PATH_BOX + ["--samples", "64", "--size", "160x160"])
+        elif mode == ["--cost"]:
+            measure(overcast, folder)
+        elif mode == ["--all"]:
+            scenes = [["plants-5", "--size", "256x256"], ["dragons-10", "--size", "256x256"],
+                      ["fractal", "--size", "256x256"],
+                      PATH_BOX + ["--samples", "16", "--size", "128x128"]]
+            for scene, small in zip(scenes, ("16M", "60M", "12M", "1M")):
+                compare_pictures(overcast, folder, [scene], (1, 2, 3, 4, 8),
+                                 [[], ["--gpu-memory", small]])
+            compare_hits(overcast, folder, "plants-5", (1, 2, 3, 4, 8))
+        else:
+            compare_pictures(overcast, folder,
+                             [["knot", "--size", "96x96", "--antialias", "0.3"],
+                              PATH_BOX + ["--samples", "4", "--size", "48x48"]], (2,),
+                             [["--gpu-memory", "16M"]])
+            compare_hits(overcast, folder, "terrain-60", (3,))
+            kill_ranks(overcast, folder, 1, PATH_BOX + ["--samples", "16", "--size", "128x128"])
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
