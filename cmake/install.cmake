@@ -13,10 +13,10 @@ set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/Overcast)
 install(TARGETS overcast_plugin EXPORT Overcast
     LIBRARY COMPONENT overcast NAMELINK_COMPONENT overcast
     INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
-install(FILES plugin/overcast.h plugin/overcast.hpp
+install(FILES plugin/overcast.h plugin/overcast.hpp plugin/overcast_ranks.h
     DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/overcast COMPONENT overcast)
 
-install(FILES plugin/examples/hills.c plugin/examples/sunlit.cpp
+install(FILES plugin/examples/hills.c plugin/examples/ranks.c plugin/examples/sunlit.cpp
     DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples COMPONENT overcast)
 
 # find_package(Overcast): the target Overcast::overcast

@@ -4,6 +4,12 @@ install(TARGETS overcast RUNTIME COMPONENT overcast)
 # Only the command loads it, so it lies in a folder of its own.
 install(TARGETS overcast_thesis
     LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/overcast COMPONENT overcast)
+# The same ABI for scenes of several processes, where there is MPI. Only an installation by hand has
+# it: a package would ask for MPI wherever Overcast is wanted.
+if(TARGET overcast_mpi)
+    install(TARGETS overcast_mpi
+        LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/overcast COMPONENT local)
+endif()
 # tachyon with Overcast in it, where it is built. Only overcast-tachyon preloads the module.
 if(TARGET overcast_tachyon)
     install(TARGETS overcast-tachyon RUNTIME COMPONENT overcast)

@@ -133,8 +133,7 @@ Result<Done> bench_soup(const SceneBench& job, const Scene& scene, const Camera&
     const Ranks* const ranks = Ranks::of_run();
     for (size_t i = 0; ranks && i < entrants->size(); ++i)
         if (Entrant& entrant = (*entrants)[i]; entrant.contender.on_gpu())
-            entrant.backend =
-                make_shared_backend(*ranks, std::move(entrant.backend), uint32_t(i));
+            entrant.backend = make_shared_backend(*ranks, std::move(entrant.backend), uint32_t(i));
     Backend& judge = reference.backend ? *reference.backend : *entrants->front().backend;
     Result<std::vector<Workload>> workloads =
         workloads_of(scene, camera, job.asked, judge, around.stop);

@@ -5,6 +5,7 @@
 #include "core/text/suggestion.h"
 #include "host/arguments/arguments.h"
 #include "host/diff/verdict.h"
+#include "host/ranks/ranks.h"
 #include "host/terminal/message.h"
 #include "host/terminal/version.h"
 
@@ -103,6 +104,11 @@ Result<int> run_command(const Arguments& arguments) {
     }
     if (name == "--version" || name == "-V" || name == "version") {
         fmt::print("overcast {}\n", version_text());
+        if (!Ranks::library_is_there())
+            fmt::print(
+                "without {}: mpirun cannot share work out between processes; it is built where "
+                "MPI is installed (Debian: libopenmpi-dev)\n",
+                kRankedProduct);
         return kExitOk;
     }
     return run_named(name, {arguments.begin() + 1, arguments.end()});

@@ -62,7 +62,8 @@ public:
         if (const Result<Done> joined = join_ranks(*backend_options, source_); !joined)
             return joined.error();
         const Ranks* const ranks = Ranks::of_run();
-        const LogSink log = standard_error_log(ranks && !ranks->is_first() ? LogLevel::Error : *level);
+        const LogSink log =
+            standard_error_log(ranks && !ranks->is_first() ? LogLevel::Error : *level);
         use_wide_vectors(*backend_options);
         DeviceOpening opening(*backend_options);
         source_.on_disk = backend_options->host_bytes > 0;

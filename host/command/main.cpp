@@ -21,9 +21,8 @@ static int fail(std::string_view sentence) {
     const ovc::Ranks* const ranks = ovc::Ranks::of_run();
     if (ranks && !ranks->is_first()) // what all of them have to say, the first one says
         std::this_thread::sleep_for(std::chrono::milliseconds(500));
-    ovc::print_message(
-        !ranks ? std::string(sentence)
-               : fmt::format("{}: {}", ranks->name_of(ranks->rank()), sentence));
+    ovc::print_message(!ranks ? std::string(sentence)
+                              : fmt::format("{}: {}", ranks->name_of(ranks->rank()), sentence));
     if (ranks)
         ranks->end_all(ovc::kExitError);
     return ovc::kExitError;

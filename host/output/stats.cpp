@@ -238,10 +238,11 @@ static std::string ranks_line(const RenderStats& s) {
         host = std::max(host, rank.host_peak_bytes);
         gpu = std::max(gpu, rank.tracing.gpu_peak_bytes);
     }
-    return fmt::format("  ranks      {}: {} visits of rays to others, {} sent; {} of the GPU and {} "
-                       "of host memory at most; the busiest had {:.2f} times the mean to do\n",
-                       s.ranks.size(), human_count(rays), human_bytes(bytes), human_bytes(gpu),
-                       human_bytes(host), imbalance(s));
+    return fmt::format(
+        "  ranks      {}: {} visits of rays to others, {} sent; {} of the GPU and {} "
+        "of host memory at most; the busiest had {:.2f} times the mean to do\n",
+        s.ranks.size(), human_count(rays), human_bytes(bytes), human_bytes(gpu), human_bytes(host),
+        imbalance(s));
 }
 
 std::string stats_summary(const RenderStats& s) {

@@ -22,8 +22,8 @@ Result<Done> join_ranks(BackendOptions& backend, SceneArguments& scene) {
     backend.kind = BackendKind::TwoLevel;
     if (!ranks->is_first())
         say_nothing_on_interrupt();
-    const bool is_scene_file = scene.scenes.size() == 1 &&
-                               std::filesystem::path(scene.scenes[0]).extension() == ".ovc";
+    const bool is_scene_file =
+        scene.scenes.size() == 1 && std::filesystem::path(scene.scenes[0]).extension() == ".ovc";
     if (backend.ranks_own == OVC_RANKS_OWN_SHARE && is_scene_file && backend.host_bytes == 0)
         backend.host_bytes = kNoLimit;
     scene.on_disk = backend.host_bytes > 0;

@@ -10,6 +10,7 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <memory>
 
 namespace ovc {
@@ -27,15 +28,21 @@ bool Ranks::are_there() {
     return false;
 }
 
+bool Ranks::library_is_there() {
+    std::error_code ignored;
+    return std::filesystem::exists(find_plugin(kRankedProduct), ignored);
+}
+
 Result<Done> Ranks::open(double timeout_seconds) {
     if (!are_there() || ranks_of_run())
         return Done{};
     const std::string path = find_plugin(kRankedProduct);
     void* const library = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
     if (!library)
-        return Error{fmt::format("several processes need {}, which cannot be loaded: {}; it is built "
-                                 "where MPI is installed (docs/guide/ranks.md)",
-                                 kRankedProduct, dlerror())};
+        return Error{
+            fmt::format("several processes need {}, which cannot be loaded: {}; it is built "
+                        "where MPI is installed (docs/guide/ranks.md)",
+                        kRankedProduct, dlerror())};
     const auto get = reinterpret_cast<ovc_get_ranks_function>(dlsym(library, "ovc_get_ranks"));
     const ovc_ranks* const table = get ? get(timeout_seconds) : nullptr;
     if (!table)

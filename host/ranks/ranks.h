@@ -27,6 +27,8 @@ class Ranks {
 public:
     /// Whether mpirun, or what does its work, has started this process among several.
     static bool are_there();
+    /// Whether the library was built and lies where open() looks for it.
+    static bool library_is_there();
     /// Loads the library and starts MPI, where are_there(). All processes call it.
     /// timeout_seconds: a rank that gives no word for so long is lost; 0: 60.
     static Result<Done> open(double timeout_seconds);

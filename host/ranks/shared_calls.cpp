@@ -24,7 +24,7 @@ enum class CallKind : uint8_t { Nearest, Any, End };
 struct Call {
     CallKind kind = CallKind::End;
     uint32_t backend = 0;
-    uint64_t key = 0;   // of the rays
+    uint64_t key = 0; // of the rays
     bool has_rays = false;
     std::vector<Ray> rays; // of all ranks; where has_rays, as the next
     std::vector<TriangleId> skip;
@@ -35,7 +35,8 @@ RankBytes bytes_of_call(const Call& call) {
     writer(call.kind, call.backend, call.key, call.has_rays, uint64_t(call.rays.size()),
            uint64_t(call.skip.size()));
     const Bytes head = writer.bytes();
-    const auto rays = std::as_bytes(std::span(call.rays)), skip = std::as_bytes(std::span(call.skip));
+    const auto rays = std::as_bytes(std::span(call.rays)),
+               skip = std::as_bytes(std::span(call.skip));
     RankBytes bytes(head.begin(), head.end());
     bytes.insert(bytes.end(), rays.begin(), rays.end());
     bytes.insert(bytes.end(), skip.begin(), skip.end());
@@ -127,9 +128,9 @@ private:
         for (uint32_t rank = 0; rank < ranks_.count(); ++rank) {
             const RankBytes& bytes = (*all)[rank];
             if (bytes.front() != std::byte(0))
-                return Error{ranks_.name_of(rank) + ": " +
-                             std::string(reinterpret_cast<const char*>(&bytes[1]),
-                                         bytes.size() - 1)};
+                return Error{
+                    ranks_.name_of(rank) + ": " +
+                    std::string(reinterpret_cast<const char*>(&bytes[1]), bytes.size() - 1)};
             const std::byte* from = bytes.data() + 1;
             for (size_t i = rank * kBlock; i < answers.size(); i += ranks_.count() * kBlock) {
                 const size_t count = std::min(kBlock, answers.size() - i);

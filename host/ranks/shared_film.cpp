@@ -3,16 +3,16 @@
 // force loses no more than a round.
 #include "host/ranks/shared_film.h"
 
-#include "core/file/value_bytes.h"
 #include "host/terminal/message.h"
 
 #include <algorithm>
+#include <cstring>
 
 namespace ovc {
 namespace {
 
-/// A round has about so many camera rays a rank: more of them move fewer pages under a budget.
-constexpr uint64_t kRoundRays = uint64_t(1) << 18;
+/// A round has about so many rays a rank: more of them move fewer pages under a budget.
+constexpr uint64_t kRoundRays = uint64_t(1) << 20;
 constexpr uint64_t kMaxRounds = 64;
 
 /// Deals pixels out in tiles, so that neighbours' rays stay together and all ranks have about as
@@ -53,30 +53,46 @@ struct Pixels {
             film.restore(pixels[i], sums[i]);
     }
     RankBytes bytes() const {
-        ByteWriter writer;
-        writer(complete, pixels, sums);
-        const Bytes bytes = writer.bytes();
-        return {bytes.begin(), bytes.end()};
+        const auto numbers = std::as_bytes(std::span(pixels)),
+                   light = std::as_bytes(std::span(sums));
+        RankBytes bytes(1, std::byte(complete));
+        bytes.reserve(1 + numbers.size() + light.size());
+        bytes.insert(bytes.end(), numbers.begin(), numbers.end());
+        bytes.insert(bytes.end(), light.begin(), light.end());
+        return bytes;
     }
     static Pixels of(std::span<const std::byte> bytes) {
-        Pixels pixels;
-        ByteReader reader(bytes);
-        reader(pixels.complete, pixels.pixels, pixels.sums);
-        return pixels;
+        Pixels some;
+        const size_t count = bytes.size() / (sizeof(uint32_t) + sizeof(Film::Sums));
+        some.complete = bytes.front() != std::byte(0);
+        some.pixels.resize(count);
+        some.sums.resize(count);
+        if (count == 0)
+            return some;
+        const std::byte* const numbers = bytes.data() + 1;
+        std::memcpy(some.pixels.data(), numbers, count * sizeof(uint32_t));
+        std::memcpy(some.sums.data(), numbers + count * sizeof(uint32_t),
+                    count * sizeof(Film::Sums));
+        return some;
     }
 };
 
 class SharedFilm {
 public:
-    SharedFilm(const Ranks& ranks, Film& film, bool to_all, const RenderPart& render,
-               const RenderObserver& observe)
-        : ranks_(ranks), film_(film), to_all_(to_all), render_(render), observe_(observe) {}
+    SharedFilm(const Ranks& ranks, Film& film, const SharedFilmOptions& options,
+               const RenderPart& render, const RenderObserver& observe)
+        : ranks_(ranks),
+          film_(film),
+          to_all_(options.to_all),
+          rays_per_sample_(options.rays_per_sample),
+          render_(render),
+          observe_(observe) {}
 
     Result<RenderReport> run() {
         const uint64_t left = pixel_count() - film_.pixels_done();
-        const uint64_t rays = left * film_.samples();
-        const auto rounds = uint32_t(
-            std::clamp<uint64_t>(rays / (ranks_.count() * kRoundRays), 1, kMaxRounds));
+        const uint64_t rays = left * film_.samples() * rays_per_sample_;
+        const auto rounds =
+            uint32_t(std::clamp<uint64_t>(rays / (ranks_.count() * kRoundRays), 1, kMaxRounds));
         report_.complete = true;
         for (uint32_t round = 0; round < rounds && report_.complete; ++round)
             if (const Result<Done> done = run_round(Tiles(film_, ranks_.count(), rounds), round);
@@ -170,6 +186,7 @@ private:
     const Ranks& ranks_;
     Film& film_;
     const bool to_all_;
+    const uint32_t rays_per_sample_;
     const RenderPart& render_;
     const RenderObserver& observe_;
     RenderReport report_;
@@ -189,9 +206,9 @@ Result<Done> spread_film(const Ranks& ranks, Film& film) {
     return Done{};
 }
 
-Result<RenderReport> render_shared(const Ranks& ranks, Film& film, bool to_all,
+Result<RenderReport> render_shared(const Ranks& ranks, Film& film, const SharedFilmOptions& options,
                                    const RenderPart& render, const RenderObserver& observe) {
-    return SharedFilm(ranks, film, to_all, render, observe).run();
+    return SharedFilm(ranks, film, options, render, observe).run();
 }
 
 } // namespace ovc

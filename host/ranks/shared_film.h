@@ -16,12 +16,16 @@ using RenderPart = std::function<Result<RenderReport>(const RenderObserver&, Fil
 /// Marks the pixels that are done on the film of rank 0 on all films. All ranks call it.
 Result<Done> spread_film(const Ranks& ranks, Film& film);
 
-/// Renders the pixels of the film that are not done, each on one rank; all ranks call it, with films
-/// on which the same pixels are done. That of rank 0 has all of them afterwards; with to_all the
-/// others' have too. Where it is stopped, or a rank is lost or fails, rank 0 has those that have
-/// come, and the report is not complete. Sums of light do not depend on who adds them, so the bits
-/// are those of one rank.
-Result<RenderReport> render_shared(const Ranks& ranks, Film& film, bool to_all,
+struct SharedFilmOptions {
+    bool to_all = false;          // the films of all ranks get all pixels, not only that of rank 0
+    uint32_t rays_per_sample = 1; // about so many, at least 1
+};
+
+/// Renders the pixels of the film that are not done, each on one rank; all ranks call it, with
+/// films on which the same pixels are done. That of rank 0 has all of them afterwards. Where it is
+/// stopped, or a rank is lost or fails, rank 0 has those that have come, and the report is not
+/// complete. Sums of light do not depend on who adds them, so the bits are those of one rank.
+Result<RenderReport> render_shared(const Ranks& ranks, Film& film, const SharedFilmOptions& options,
                                    const RenderPart& render, const RenderObserver& observe);
 
 } // namespace ovc

@@ -154,10 +154,13 @@ Result<RenderReport> render_picture(const Scene& scene, const Camera& camera, Ba
                                     watch_it, to);
     };
     // Ranks share out the pixels of a film; else all of them are this process's.
+    const uint32_t rays_per_sample = // a guess
+        options.integrator == IntegratorKind::Path ? std::clamp(options.max_depth, 1u, 8u) : 1;
     const auto render = [&](Film& to, bool to_all, const RenderObserver& watch_it,
                             const RenderPart& part) {
-        return options.ranks ? render_shared(*options.ranks, to, to_all, part, watch_it)
-                             : part(watch_it, to);
+        return options.ranks
+                   ? render_shared(*options.ranks, to, {to_all, rays_per_sample}, part, watch_it)
+                   : part(watch_it, to);
     };
     const auto render_points = [&](std::span<const dvec2> points, const RenderObserver& watch_it,
                                    Film& to) {
@@ -168,13 +171,12 @@ Result<RenderReport> render_picture(const Scene& scene, const Camera& camera, Ba
     };
     const bool is_adaptive = options.antialias && film.pixels_done() == 0;
     Result<RenderReport> report =
-        is_adaptive
-            ? AdaptivePasses(pinhole, observe, render_points)
-                  .run(*options.antialias, scene.gamma, film)
-            : render(film, /* to_all= */ false, observe,
-                     [&](const RenderObserver& watch_part, Film& part) {
-                         return trace(CameraRays(pinhole, part), watch_part, part);
-                     });
+        is_adaptive ? AdaptivePasses(pinhole, observe, render_points)
+                          .run(*options.antialias, scene.gamma, film)
+                    : render(film, /* to_all= */ false, observe,
+                             [&](const RenderObserver& watch_part, Film& part) {
+                                 return trace(CameraRays(pinhole, part), watch_part, part);
+                             });
     if (!report)
         return report;
     report->pixels_done = film.pixels_done();

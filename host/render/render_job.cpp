@@ -152,7 +152,7 @@ private:
         frame.host_peak_bytes = host_peak_bytes();
         frame.seconds = watch.seconds(); // for the notes in its files
         const Stopwatch output;
-        const Result<Done> saved = !is_first_rank(job_)     ? Done{}
+        const Result<Done> saved = !is_first_rank(job_)    ? Done{}
                                    : frame.report.complete ? save_finished(shot, film, frame)
                                                            : save_unfinished(shot, film, frame);
         if (!saved)
@@ -301,11 +301,12 @@ static void report(const RenderJob& job, const RenderStats& stats) {
         return;
     }
     if (job.shots.empty()) {
-        print_message(fmt::format(
-            "{}; {:.0f} % of the picture is in {}, and the same command with "
-            "--continue goes on from there",
-            how, 100.0 * double(stats.report.pixels_done) / (double(stats.width) * double(stats.height)),
-            unfinished_picture(job.outputs[0])));
+        print_message(fmt::format("{}; {:.0f} % of the picture is in {}, and the same command with "
+                                  "--continue goes on from there",
+                                  how,
+                                  100.0 * double(stats.report.pixels_done) /
+                                      (double(stats.width) * double(stats.height)),
+                                  unfinished_picture(job.outputs[0])));
         return;
     }
     const size_t saved = stats.frames_there + stats.frames.size();
@@ -463,8 +464,7 @@ static std::vector<Ray> camera_sample(const RenderJob& job, const PicturePart& p
 /// Brings what all ranks have counted to the first one.
 static Result<Done> gather_ranks(const Ranks& ranks, RenderStats& stats) {
     const RankStats mine{stats.tracing, stats.report.rays, host_peak_bytes()};
-    const auto all =
-        ranks.gather(std::as_bytes(std::span(&mine, 1)), [] { return true; });
+    const auto all = ranks.gather(std::as_bytes(std::span(&mine, 1)), [] { return true; });
     if (!all)
         return all.error();
     RayCounts rays;
@@ -485,16 +485,40 @@ static Result<Done> gather_ranks(const Ranks& ranks, RenderStats& stats) {
     ranks.end_all(code);
 }
 
+/// Tells the user of the run, and ends it where there are several ranks and it is not complete.
+/// Returns the exit code.
+static Result<int> tell(const RenderJob& job, const Stopwatch& total, RenderStats& stats) {
+    const Ranks* const ranks = job.render.ranks;
+    if (ranks && stats.report.complete)
+        if (const Result<Done> done = gather_ranks(*ranks, stats); !done)
+            return done.error();
+    stats.seconds_total = total.seconds();
+    if (!job.stats.empty() && is_first_rank(job))
+        if (const Result<Done> done = save_text(stats_json(stats), job.stats); !done)
+            return done.error();
+    if (is_first_rank(job))
+        report(job, stats);
+    const int code = stats.report.complete ? kExitOk
+                     : stats.report.failed ? kExitError
+                                           : kExitInterrupted;
+    if (ranks && code != kExitOk)
+        end_all_ranks(*ranks, code);
+    return code;
+}
+
+static int say_all_is_there(const RenderJob& job) {
+    if (!job.quiet)
+        fmt::print("all is there in {}; without --continue it is rendered anew\n",
+                   printable(fmt::format("{}", fmt::join(job.outputs, ", "))));
+    return kExitOk;
+}
+
 Result<int> render(const RenderJob& job) {
     const Result<RankBytes> there = frames_there(job);
     if (!there)
         return there.error();
-    if (std::ranges::count(*there, std::byte(0)) == 0) {
-        if (!job.quiet)
-            fmt::print("all is there in {}; without --continue it is rendered anew\n",
-                       printable(fmt::format("{}", fmt::join(job.outputs, ", "))));
-        return kExitOk;
-    }
+    if (std::ranges::count(*there, std::byte(0)) == 0)
+        return say_all_is_there(job);
     const Stopwatch total;
     const std::optional<ThreadLimit> threads = limit_threads(job.threads);
     const LogSink log = standard_error_log(job.log_level);
@@ -544,21 +568,7 @@ Result<int> render(const RenderJob& job) {
     if (!done)
         return done.error();
     add_what_backend_tells(job, *scene, stage, stats);
-    if (job.render.ranks && stats.report.complete)
-        if (done = gather_ranks(*job.render.ranks, stats); !done)
-            return done.error();
-    stats.seconds_total = total.seconds();
-    if (!job.stats.empty() && is_first_rank(job))
-        if (done = save_text(stats_json(stats), job.stats); !done)
-            return done.error();
-    if (is_first_rank(job))
-        report(job, stats);
-    const int code = stats.report.complete ? kExitOk
-                     : stats.report.failed ? kExitError
-                                           : kExitInterrupted;
-    if (job.render.ranks && code != kExitOk)
-        end_all_ranks(*job.render.ranks, code);
-    return code;
+    return tell(job, total, stats);
 }
 
 } // namespace ovc

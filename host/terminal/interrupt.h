@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Handles SIGINT and SIGTERM: Ctrl-C, or whoever manages a machine's jobs, ends the program at once with exit code 2, or, while there is something to
-// save, asks it to stop.
+// Handles SIGINT and SIGTERM: Ctrl-C, or whoever manages a machine's jobs, ends the program at once
+// with exit code 2, or, while there is something to save, asks it to stop.
 #pragma once
 
 namespace ovc {
@@ -9,8 +9,8 @@ inline constexpr int kExitOk = 0;
 inline constexpr int kExitError = 1;
 inline constexpr int kExitInterrupted = 2;
 
-/// Makes these signals print a message and exit with kExitInterrupted from now on. Outputs are written
-/// whole, and the one being written is removed, so nothing half done remains.
+/// Makes these signals print a message and exit with kExitInterrupted from now on. Outputs are
+/// written whole, and the one being written is removed, so nothing half done remains.
 void exit_on_interrupt();
 
 /// Whether the signal has come while a guard lives.
@@ -19,9 +19,9 @@ bool is_interrupted();
 /// Leaves the messages to another process, which gets the signals too.
 void say_nothing_on_interrupt();
 
-/// While a guard lives, the first of them only prints a message with what the program does about it,
-/// and sets interrupted(); a second one exits as above. Guards may lie within each other: the inner
-/// one says what is done, and all of them are interrupted.
+/// While a guard lives, the first of them only prints a message with what the program does about
+/// it, and sets interrupted(); a second one exits as above. Guards may lie within each other: the
+/// inner one says what is done, and all of them are interrupted.
 class InterruptGuard {
 public:
     /// doing: what the message says that the program does; must outlive the guard.

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Draws hills in letters on several ranks, in C99 with MPI: each rank adds the whole scene, keeps a share of its leaves, and
- * traces the rays of its own rows of the picture. Usage: mpirun -n 4 ranks [libovercast-mpi.so] */
+/* Draws hills in letters on several ranks, in C99 with MPI: each rank adds the whole scene, keeps a
+ * share of its leaves, and traces the rays of its own rows of the picture. Usage: mpirun -n 4 ranks
+ * [libovercast-mpi.so] */
 #include <overcast/overcast.h>
 
 #include <dlfcn.h>
@@ -35,7 +36,8 @@ static void add_hills(ovc_scene scene) {
         positions[i][0] = x, positions[i][1] = y, positions[i][2] = height(x, y);
     }
     for (uint32_t c = 0; c < CELLS; ++c) {
-        const uint32_t a = c / (SIDE - 1) * SIDE + c % (SIDE - 1), corners[6] = {a, a + 1, a + SIDE + 1, a, a + SIDE + 1, a + SIDE};
+        const uint32_t a = c / (SIDE - 1) * SIDE + c % (SIDE - 1);
+        const uint32_t corners[6] = {a, a + 1, a + SIDE + 1, a, a + SIDE + 1, a + SIDE};
         for (int i = 0; i < 6; ++i)
             indices[2 * c + i / 3][i % 3] = corners[i];
     }
@@ -80,9 +82,12 @@ int main(int argc, char** argv) {
     for (int i = 0; i < count; ++i) {
         const double z = 1.2 - 1.2 * hits[i].t;
         const int y = rank + i / WIDTH * ranks, shade = (int)(z * 22);
-        mine[y * WIDTH + i % WIDTH] = hits[i].mesh == OVC_NONE ? ' ' : ".:-=+*#%@"[shade < 0 ? 0 : shade > 8 ? 8 : shade];
+        const char* letters = ".:-=+*#%@";
+        const char letter = letters[shade < 0 ? 0 : shade > 8 ? 8 : shade];
+        mine[y * WIDTH + i % WIDTH] = hits[i].mesh == OVC_NONE ? ' ' : letter;
     }
-    MPI_Reduce(mine, all, sizeof all, MPI_CHAR, MPI_SUM, 0, MPI_COMM_WORLD); /* each is set on one rank */
+    /* Each letter is set on one rank. */
+    MPI_Reduce(mine, all, sizeof all, MPI_CHAR, MPI_SUM, 0, MPI_COMM_WORLD);
     for (int y = 0; rank == 0 && y < HEIGHT; ++y)
         printf("%.*s\n", WIDTH, all + (ptrdiff_t)y * WIDTH);
     api->destroy_scene(scene); /* all ranks call it */

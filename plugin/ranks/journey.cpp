@@ -20,9 +20,10 @@ namespace ovc {
 static constexpr size_t kMaxParcel = size_t(1) << 14;
 
 /// How many rays of a rank are at another one at once. All ranks may send theirs to the same one,
-/// whose memory for them this bounds: about 24 MiB, or 400 KiB a rank where there are many.
+/// whose memory for them this bounds: 24 MiB for two ranks, 48 MiB for many, and beyond 128 of them
+/// 400 KiB for each. With fewer, ranks wait for each other's batches.
 static size_t max_away(uint32_t ranks) {
-    return std::clamp<size_t>((size_t(1) << 18) / ranks, size_t(1) << 12, size_t(1) << 16);
+    return std::clamp<size_t>((size_t(1) << 19) / ranks, size_t(1) << 12, size_t(1) << 18);
 }
 
 Journey::Journey(const Itinerary& ranks, const JourneyRays& rays, uint32_t call, CallWatch& watch)
@@ -89,7 +90,8 @@ bool Journey::go_on(uint32_t ray) {
 
 void Journey::send_off() {
     for (uint32_t to = 0; to < ranks_.post.ranks(); ++to) {
-        const size_t max = to == ranks_.post.rank() ? JourneyRays::kMaxRays : max_away(ranks_.post.ranks());
+        const size_t max =
+            to == ranks_.post.rank() ? JourneyRays::kMaxRays : max_away(ranks_.post.ranks());
         while (!ways_[to].waiting.empty() && ways_[to].away < max)
             send_some(to, ways_[to]);
     }
@@ -97,7 +99,7 @@ void Journey::send_off() {
 
 void Journey::send_some(uint32_t to, Way& way) {
     const size_t count = std::min(way.waiting.size(), kMaxParcel);
-    std::vector<Visit> visits(count);
+    std::vector<RankVisit> visits(count);
     parallel_for(count, 2048, [&](size_t first, size_t last) {
         for (size_t i = first; i < last; ++i)
             visits[i] = visit_of(way.waiting[i]);
@@ -106,13 +108,17 @@ void Journey::send_some(uint32_t to, Way& way) {
     way.away += count;
     visits_elsewhere_ += to == ranks_.post.rank() ? 0 : count;
     ranks_.post.send(to, Parcel(is_any() ? ParcelKind::AnyVisits : ParcelKind::NearestVisits, call_,
-                           std::span<const Visit>(visits)));
+                                std::span<const RankVisit>(visits)));
 }
 
-Visit Journey::visit_of(uint32_t ray) const {
+RankVisit Journey::visit_of(uint32_t ray) const {
     const Exclusion without = rays_.without[ray];
-    Visit visit{rays_.rays[ray],  without.skip, without.after.id, without.after.t,
-                rays_.without.sieves[ray].mask, ray};
+    RankVisit visit{rays_.rays[ray],
+                    without.skip,
+                    without.after.id,
+                    without.after.t,
+                    rays_.without.sieves[ray].mask,
+                    ray};
     // A nearer hit may have a t that rounds to the same double, from a little above it.
     if (!is_any())
         visit.ray.t_max =

@@ -62,7 +62,7 @@ private:
     bool go_on(uint32_t ray);
     void send_off();
     void send_some(uint32_t to, Way& way);
-    Visit visit_of(uint32_t ray) const;
+    RankVisit visit_of(uint32_t ray) const;
     Result<Done> take(const Inbox::Letter& letter);
     void take_hit(const HitThere& there);
     bool is_nearer(uint32_t ray, const Hit& hit) const;
@@ -73,10 +73,10 @@ private:
     const uint32_t call_;
     CallWatch& watch_;
     std::function<bool()> is_idle_ = [] { return false; };
-    std::vector<Stop> stops_;        // of all rays
-    std::vector<uint32_t> next_;     // of each ray, into stops_
-    std::vector<uint32_t> end_;      // likewise
-    std::vector<Way> ways_;          // to each rank
+    std::vector<Stop> stops_;    // of all rays
+    std::vector<uint32_t> next_; // of each ray, into stops_
+    std::vector<uint32_t> end_;  // likewise
+    std::vector<Way> ways_;      // to each rank
     size_t done_ = 0;
     uint64_t visits_elsewhere_ = 0;
     double seconds_waiting_ = 0;

@@ -43,8 +43,7 @@ Result<std::unique_ptr<Structure>> make_structure(const Soup& soup, GlThread& gl
                                                   const ovc_scene_config& config,
                                                   const LogSink& log, BuildProgress* progress,
                                                   LeafStore* store) {
-    Result<std::unique_ptr<Post>> post =
-        make_mpi_post({config.communicator, config.rank_timeout});
+    Result<std::unique_ptr<Post>> post = make_mpi_post({config.communicator, config.rank_timeout});
     if (!post)
         return post.error();
     TwoLevelOptions options = two_level_options(config);
@@ -64,8 +63,8 @@ Result<std::unique_ptr<Structure>> make_structure(const Soup& soup, GlThread& gl
     }
     Result<std::unique_ptr<TwoLevel>> local = built_here(soup, gl, options, log, progress);
     Notes notes(**post);
-    if (const Result<Done> all = first_error(
-            notes, **post, local ? Result<Done>(Done{}) : Result<Done>(local.error()));
+    if (const Result<Done> all =
+            first_error(notes, **post, local ? Result<Done>(Done{}) : Result<Done>(local.error()));
         !all)
         return all.error();
     if (!sharing.shares())

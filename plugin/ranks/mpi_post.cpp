@@ -82,8 +82,7 @@ public:
         if (lost_ == kNone)
             return std::nullopt;
         return Error{format_text("{} has given no word for {} s; the job cannot go on without it",
-                                 name_of(lost_),
-                                 std::chrono::duration<double>(timeout_).count())};
+                                 name_of(lost_), std::chrono::duration<double>(timeout_).count())};
     }
     void close() override {
         if (!thread_.joinable())
@@ -149,7 +148,7 @@ private:
                     return;
             }
             nap = was_busy ? std::chrono::microseconds(20)
-                           : std::min(nap * 2, std::chrono::microseconds(2000));
+                           : std::min(nap * 2, std::chrono::microseconds(500));
             std::unique_lock lock(mutex_);
             changed_.wait_for(lock, nap, [&] { return woken_; });
             woken_ = false;
@@ -175,10 +174,10 @@ private:
 
     bool forget_sent() {
         return sending_.remove_if([](Sending& sending) {
-                   int over = 0;
-                   MPI_Test(&sending.request, &over, MPI_STATUS_IGNORE);
-                   return over != 0;
-               }) > 0;
+            int over = 0;
+            MPI_Test(&sending.request, &over, MPI_STATUS_IGNORE);
+            return over != 0;
+        }) > 0;
     }
 
     bool receive_all() {
@@ -239,8 +238,7 @@ private:
         // The word lies in the parcel's head, whose call it is.
         sending.parcel = Parcel(ParcelKind::Note, word, std::span<const uint32_t>());
         const auto bytes = sending.parcel.bytes().subspan(sizeof(uint32_t));
-        MPI_Isend(bytes.data(), int(bytes.size()), MPI_BYTE, int(to), tag, comm_,
-                  &sending.request);
+        MPI_Isend(bytes.data(), int(bytes.size()), MPI_BYTE, int(to), tag, comm_, &sending.request);
         sent_ += bytes.size();
     }
 

@@ -9,8 +9,8 @@
 namespace ovc {
 
 struct MpiPostOptions {
-    int32_t communicator = 0;     // as MPI_Comm_c2f tells it; 0: MPI_COMM_WORLD
-    double timeout_seconds = 0;   // a rank that gives no word for so long is lost; 0: 60
+    int32_t communicator = 0;   // as MPI_Comm_c2f tells it; 0: MPI_COMM_WORLD
+    double timeout_seconds = 0; // a rank that gives no word for so long is lost; 0: 60
 };
 
 /// Makes the post; all ranks of the communicator call this, in the same order where there are

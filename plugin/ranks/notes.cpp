@@ -33,8 +33,8 @@ Result<std::vector<std::byte>> Notes::next_from(uint32_t rank,
     }
 }
 
-Result<std::vector<std::vector<std::byte>>>
-Notes::gather(std::span<const std::byte> mine, const std::function<bool()>& goes_on) {
+Result<std::vector<std::vector<std::byte>>> Notes::gather(std::span<const std::byte> mine,
+                                                          const std::function<bool()>& goes_on) {
     post_.send(0, note_of(mine));
     std::vector<std::vector<std::byte>> all;
     for (uint32_t rank = 0; post_.rank() == 0 && rank < post_.ranks(); ++rank) {

@@ -21,8 +21,8 @@ public:
     /// All ranks call it. The others return at once, with nothing. goes_on(): asked some twenty
     /// times a second; where it returns false, rank 0 gives up with an Error of the kind Cancelled.
     /// Error: a rank is lost.
-    Result<std::vector<std::vector<std::byte>>>
-    gather(std::span<const std::byte> mine, const std::function<bool()>& goes_on);
+    Result<std::vector<std::vector<std::byte>>> gather(std::span<const std::byte> mine,
+                                                       const std::function<bool()>& goes_on);
     /// Returns, on all ranks, the bytes that rank 0 passes. All ranks call it.
     Result<std::vector<std::byte>> spread(std::span<const std::byte> of_first,
                                           const std::function<bool()>& goes_on);

@@ -17,7 +17,7 @@
 namespace ovc {
 
 /// A ray on its way to a rank that has pages for it.
-struct Visit {
+struct RankVisit {
     Ray ray; // t_max: that of the nearest hit so far, or a little more
     TriangleId skip;
     TriangleId after; // with after_t, as in Exclusion::after
@@ -25,7 +25,7 @@ struct Visit {
     uint32_t mask;
     uint32_t slot; // the number of the ray in the call at home
 };
-static_assert(sizeof(Visit) == 96);
+static_assert(sizeof(RankVisit) == 96);
 
 /// The nearest hit that a visited rank has found.
 struct HitThere {
@@ -41,12 +41,12 @@ struct OcclusionThere {
 };
 
 enum class ParcelKind : uint32_t {
-    NearestVisits,  // Visit
-    AnyVisits,      // Visit
-    Hits,           // HitThere
-    Occlusions,     // OcclusionThere
-    Failure,        // a character for the kind of an error, and its sentence
-    Note,           // bytes between hosts (host_ranks.h)
+    NearestVisits, // RankVisit
+    AnyVisits,     // RankVisit
+    Hits,          // HitThere
+    Occlusions,    // OcclusionThere
+    Failure,       // a character for the kind of an error, and its sentence
+    Note,          // bytes between hosts (host_ranks.h)
 };
 
 /// Items of one kind, of one call.

@@ -82,9 +82,9 @@ public:
 protected:
     virtual void send_away(uint32_t to, Parcel parcel) = 0;
     void deliver(uint32_t from, Parcel parcel) {
-        Inbox& inbox = parcel.has_visits()                       ? visits
+        Inbox& inbox = parcel.has_visits()                 ? visits
                        : parcel.kind() == ParcelKind::Note ? notes
-                                                                 : answers;
+                                                           : answers;
         inbox.put(from, std::move(parcel));
     }
 };

@@ -16,7 +16,8 @@ namespace ovc {
 namespace {
 
 constexpr uint32_t kStretches = 4; // that each rank gets
-constexpr size_t kMaxTests = 20'000'000; // of a box and a ray of the sample: some tenths of a second
+constexpr size_t kMaxTests =
+    20'000'000; // of a box and a ray of the sample: some tenths of a second
 
 /// Returns rays between random points on the box's sides, of which more come by larger things.
 std::vector<Ray> random_lines(const Box& box, size_t count) {
@@ -147,7 +148,8 @@ std::vector<uint32_t> share_out(const BuiltScene& scene, std::span<const PageBox
     Box around;
     for (const PageBox& box : boxes)
         around.add(box.box);
-    const size_t max_rays = std::clamp<size_t>(kMaxTests / std::max<size_t>(boxes.size(), 1), 64, 4096);
+    const size_t max_rays =
+        std::clamp<size_t>(kMaxTests / std::max<size_t>(boxes.size(), 1), 64, 4096);
     std::vector<Ray> rays;
     if (options.sample.empty() && !around.empty())
         rays = random_lines(around, max_rays);

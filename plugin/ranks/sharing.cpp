@@ -23,9 +23,10 @@ PagesKept Sharing::choose(const BuiltScene& scene) {
     const uint32_t ranks = options_.shares.ranks;
     if (scene.pages.size() < kFewLeaves * ranks && options_.rank == 0)
         say(log_, LogLevel::Warning,
-            format_text("{} leaves for {} ranks: their shares will differ much; with smaller leaves "
-                        "they would not",
-                        scene.pages.size(), ranks));
+            format_text(
+                "{} leaves for {} ranks: their shares will differ much; with smaller leaves "
+                "they would not",
+                scene.pages.size(), ranks));
     const std::vector<PageBox> boxes = page_boxes(scene);
     const std::vector<uint32_t> owners = share_out(scene, boxes, options_.shares);
     finder_ = std::make_unique<StopFinder>(boxes, owners, options_.rank);

@@ -1,93 +1,89 @@
 // SPDX-License-Identifier: Apache-2.0
-// Joins the boxes of each rank to a few, builds a tree over them by medians, and walks it.
+// Joins the boxes of each rank to a few, and tests a ray with those of the ranks that it comes by.
 #include "plugin/ranks/stops.h"
 
 #include "plugin/ranks/box_entry.h"
 
 #include <algorithm>
 #include <cassert>
+#include <limits>
 
 namespace ovc {
 
 /// How many boxes there are around the pages of a rank. More of them send fewer rays to ranks in
-/// vain, and take longer to walk.
-static constexpr size_t kPartsPerRank = 64;
+/// vain, and take longer to test.
+static constexpr size_t kPartsPerRank = 32;
+
+void StopFinder::Boxes::add(const Box& box) {
+    for (int axis = 0; axis < 3; ++axis) {
+        sides_[axis].push_back(box.lo[axis]);
+        sides_[3 + axis].push_back(box.hi[axis]);
+    }
+}
+
+void StopFinder::Boxes::enter(const Ray& ray, std::vector<double>& entries) const {
+    entries.resize(size());
+    const dvec3 inv = dvec3(1) / (ray.dir + 0.0); // which makes 0 of -0
+    const double* in[3];
+    const double* out[3];
+    for (int axis = 0; axis < 3; ++axis) {
+        in[axis] = sides_[ray.dir[axis] < 0 ? 3 + axis : axis].data();
+        out[axis] = sides_[ray.dir[axis] < 0 ? axis : 3 + axis].data();
+    }
+    for (size_t i = 0; i < entries.size(); ++i) {
+        double near = ray.t_min, far = ray.t_max;
+        for (int axis = 0; axis < 3; ++axis) {
+            // 0 times infinity is NaN, which bounds nothing: max and min keep what they have.
+            near = std::max(near, (in[axis][i] - ray.org[axis]) * inv[axis]);
+            far = std::min(far, (out[axis][i] - ray.org[axis]) * inv[axis]);
+        }
+        near = with_margin(near, -1);
+        far = with_margin(far, 1);
+        entries[i] = near <= far ? near : kNoEntry; // infinite where an axis is passed by
+    }
+}
 
 StopFinder::StopFinder(std::span<const PageBox> boxes, std::span<const uint32_t> owners,
                        uint32_t here) {
     const auto rank_of = [&](const PageBox& box) {
         return owners[box.page] == kEveryRank ? here : owners[box.page];
     };
-    std::vector<size_t> left; // boxes of each rank that are to come
+    std::vector<std::vector<Box>> of_rank;
     for (const PageBox& box : boxes) {
-        left.resize(std::max(left.size(), size_t(rank_of(box)) + 1));
-        ++left[rank_of(box)];
+        of_rank.resize(std::max(of_rank.size(), size_t(rank_of(box)) + 1));
+        of_rank[rank_of(box)].push_back(box.box);
     }
-    // Pages stand in the order of the KD-tree, so that neighbours lie together.
-    std::vector<size_t> group(left.size()); // how many boxes make one part
-    for (size_t rank = 0; rank < left.size(); ++rank)
-        group[rank] = (left[rank] + kPartsPerRank - 1) / kPartsPerRank;
-    std::vector<size_t> open(left.size()), filled(left.size());
-    for (const PageBox& box : boxes) {
-        const uint32_t rank = rank_of(box);
-        if (filled[rank] == 0) {
-            open[rank] = parts_.size();
-            parts_.push_back({{}, rank});
+    for (size_t rank = 0; rank < of_rank.size(); ++rank) {
+        const std::vector<Box>& all = of_rank[rank];
+        if (all.empty())
+            continue;
+        ranks_.push_back(uint32_t(rank));
+        parts_.emplace_back();
+        Box around;
+        // Pages stand in the order of the KD-tree, so that neighbours lie together.
+        const size_t group = (all.size() + kPartsPerRank - 1) / kPartsPerRank;
+        for (size_t first = 0; first < all.size(); first += group) {
+            Box part;
+            for (size_t i = first; i < std::min(all.size(), first + group); ++i)
+                part.add(all[i]);
+            parts_.back().add(part);
+            around.add(part);
         }
-        parts_[open[rank]].box.add(box.box);
-        filled[rank] = (filled[rank] + 1) % group[rank];
+        around_.add(around);
     }
-    if (!parts_.empty())
-        build(0, uint32_t(parts_.size()));
-}
-
-uint32_t StopFinder::build(uint32_t first, uint32_t count) {
-    const auto number = uint32_t(nodes_.size());
-    nodes_.push_back({{}, first, count, 0});
-    Box centers;
-    for (uint32_t i = first; i < first + count; ++i) {
-        nodes_[number].box.add(parts_[i].box);
-        centers.add(parts_[i].box.center());
-    }
-    if (count == 1)
-        return number;
-    const int axis = major_axis(centers.extent());
-    const auto begin = parts_.begin() + first;
-    const uint32_t half = count / 2;
-    std::nth_element(begin, begin + half, begin + count, [&](const Part& a, const Part& b) {
-        return a.box.center()[axis] < b.box.center()[axis];
-    });
-    build(first, half);
-    const uint32_t right = build(first + half, count - half);
-    nodes_[number].right = right;
-    return number;
 }
 
 void StopFinder::find(const Ray& ray, std::vector<Stop>& stops) const {
     stops.clear();
-    if (nodes_.empty())
-        return;
-    constexpr size_t kMaxDepth = 64; // halves of at most 2^32 parts
-    uint32_t stack[kMaxDepth];
-    size_t depth = 0;
-    stack[depth++] = 0;
-    while (depth > 0) {
-        const uint32_t number = stack[--depth];
-        const Node& node = nodes_[number];
-        const double t = box_entry(ray, node.box);
-        if (t == kNoEntry)
+    thread_local std::vector<double> of_ranks, of_parts;
+    around_.enter(ray, of_ranks);
+    for (size_t i = 0; i < ranks_.size(); ++i) {
+        if (of_ranks[i] == kNoEntry)
             continue;
-        if (node.count > 1) {
-            stack[depth++] = node.right;
-            stack[depth++] = number + 1;
-            continue;
-        }
-        const uint32_t rank = parts_[node.first].rank;
-        const auto known = std::ranges::find(stops, rank, &Stop::rank);
-        if (known == stops.end())
-            stops.push_back({t, rank});
-        else
-            known->t = std::min(known->t, t);
+        parts_[i].enter(ray, of_parts);
+        const double t = *std::ranges::min_element(of_parts);
+        if (t != kNoEntry)
+            stops.push_back({t, ranks_[i]});
     }
     std::ranges::sort(stops, [](const Stop& a, const Stop& b) {
         return a.t < b.t || (a.t == b.t && a.rank < b.rank);

@@ -18,7 +18,7 @@ struct Stop {
     uint32_t rank;
 };
 
-/// Boxes around the pages of each rank, in a tree.
+/// Boxes around the pages of each rank.
 class StopFinder {
 public:
     /// owners: of each page. here: the rank that stands for every rank, where all have a page.
@@ -28,20 +28,21 @@ public:
     void find(const Ray& ray, std::vector<Stop>& stops) const;
 
 private:
-    struct Part {
-        Box box;
-        uint32_t rank;
-    };
-    /// Over parts_[first, first + count); a leaf where count is 1. The left child follows it.
-    struct Node {
-        Box box;
-        uint32_t first, count, right;
+    /// Boxes side by side, which one loop tests, several at once.
+    class Boxes {
+    public:
+        void add(const Box& box);
+        size_t size() const { return sides_[0].size(); }
+        /// Sets entries[i] to box_entry() of box i, or a little less.
+        void enter(const Ray& ray, std::vector<double>& entries) const;
+
+    private:
+        std::vector<double> sides_[6]; // lo.x, lo.y, lo.z, hi.x, hi.y, hi.z
     };
 
-    uint32_t build(uint32_t first, uint32_t count);
-
-    std::vector<Part> parts_;
-    std::vector<Node> nodes_;
+    std::vector<uint32_t> ranks_; // that have pages
+    Boxes around_;                // all pages of each of these
+    std::vector<Boxes> parts_;    // a few boxes around them
 };
 
 } // namespace ovc

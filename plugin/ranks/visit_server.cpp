@@ -11,7 +11,7 @@
 namespace ovc {
 
 /// A batch has so many rays at most, unless one parcel has more.
-static constexpr size_t kMaxBatch = size_t(1) << 18;
+static constexpr size_t kMaxBatch = size_t(1) << 17;
 
 /// The visits of several parcels as a call takes them.
 struct VisitServer::Batch {
@@ -23,7 +23,7 @@ struct VisitServer::Batch {
     explicit Batch(std::span<const Inbox::Letter> letters) {
         bool has_after = false, has_masks = false;
         for (const Inbox::Letter& letter : letters)
-            for (const Visit& visit : letter.parcel.items<Visit>()) {
+            for (const RankVisit& visit : letter.parcel.items<RankVisit>()) {
                 rays.push_back(visit.ray);
                 skip.push_back(visit.skip);
                 after.push_back({visit.after_t, 0, 0, visit.after});
@@ -59,7 +59,10 @@ void VisitServer::run(const std::stop_token& stop) {
     if (threads_)
         scope.emplace(*threads_);
     while (!stop.stop_requested()) {
-        const std::vector<Inbox::Letter> letters = post_.visits.take(std::chrono::milliseconds(50));
+        std::vector<Inbox::Letter> letters = post_.visits.take(std::chrono::milliseconds(50));
+        // Others have waited for their rays to come here already.
+        std::ranges::stable_partition(
+            letters, [&](const Inbox::Letter& letter) { return letter.from != post_.rank(); });
         is_idle_ = letters.empty();
         // Rays that ask for any hit have no children, so nothing waits for the others' sake.
         for (const ParcelKind kind : {ParcelKind::NearestVisits, ParcelKind::AnyVisits})
@@ -86,7 +89,7 @@ void VisitServer::serve(std::span<const Inbox::Letter> letters, ParcelKind kind)
     for (const Inbox::Letter& letter : letters) {
         if (letter.parcel.kind() != kind)
             continue;
-        const size_t more = letter.parcel.items<Visit>().size();
+        const size_t more = letter.parcel.items<RankVisit>().size();
         if (rays + more > kMaxBatch)
             trace(), rays = 0;
         some.push_back(letter);
@@ -103,10 +106,10 @@ void VisitServer::trace_nearest(const Batch& batch, std::span<const Inbox::Lette
     size_t next = 0;
     for (const Inbox::Letter& letter : letters) {
         std::vector<HitThere> answers;
-        for (const Visit& visit : letter.parcel.items<Visit>())
+        for (const RankVisit& visit : letter.parcel.items<RankVisit>())
             answers.push_back({hits[next++], visit.slot});
-        post_.send(letter.from,
-                Parcel(ParcelKind::Hits, letter.parcel.call(), std::span<const HitThere>(answers)));
+        post_.send(letter.from, Parcel(ParcelKind::Hits, letter.parcel.call(),
+                                       std::span<const HitThere>(answers)));
     }
 }
 
@@ -117,10 +120,10 @@ void VisitServer::trace_any(const Batch& batch, std::span<const Inbox::Letter> l
     size_t next = 0;
     for (const Inbox::Letter& letter : letters) {
         std::vector<OcclusionThere> answers;
-        for (const Visit& visit : letter.parcel.items<Visit>())
+        for (const RankVisit& visit : letter.parcel.items<RankVisit>())
             answers.push_back({visit.slot, occluded[next++]});
         post_.send(letter.from, Parcel(ParcelKind::Occlusions, letter.parcel.call(),
-                                    std::span<const OcclusionThere>(answers)));
+                                       std::span<const OcclusionThere>(answers)));
     }
 }
 
@@ -129,7 +132,7 @@ void VisitServer::fail(std::span<const Inbox::Letter> letters, const Error& erro
     told += error.message;
     for (const Inbox::Letter& letter : letters)
         post_.send(letter.from,
-                Parcel(ParcelKind::Failure, letter.parcel.call(), std::span<const char>(told)));
+                   Parcel(ParcelKind::Failure, letter.parcel.call(), std::span<const char>(told)));
 }
 
 } // namespace ovc
