@@ -182,15 +182,15 @@ Result<SceneFile> read(const Archive& archive) {
     return file;
 }
 
-/// Leaves corners and levels on the disk.
-Result<SceneFile> read(std::unique_ptr<SceneOnDisk> disk, const StoredArchive& archive) {
+/// Leaves corners and levels on the disk, which the scene then owns.
+Result<SceneFile> read(std::unique_ptr<SceneOnDisk>& disk, const StoredArchive& archive) {
     const ArchivePart corners = archive.place("corners"), levels = archive.place("levels");
     disk->corners_checksum = corners.checksum;
     disk->levels_offset = levels.offset;
     disk->levels_bytes = levels.bytes;
     const auto own_chunk = [&](const MeshExtent& extent, uint64_t first) {
-        disk->meshes.push_back(
-            std::make_unique<FileCorners>(disk->file, corners.offset + first * sizeof(vec3)));
+        disk->meshes.push_back(std::make_unique<FileCorners>(
+            disk->file, disk->corners_were_lost, corners.offset + first * sizeof(vec3)));
         return Chunk::stored(extent.origin, *disk->meshes.back(), uint32_t(extent.corners / 3));
     };
     Result<SceneFile> file = read<StoredArchive>(archive, corners.bytes / sizeof(vec3), own_chunk);
@@ -368,10 +368,11 @@ Result<SceneFile> open_scene_file(const std::filesystem::path& path) {
     Result<DiskFile> opened = DiskFile::open(path);
     if (!opened)
         return opened.error();
-    const auto failed = [&](const Error& error) {
-        return Error{fmt::format("{}: the file {}", path.string(), error.message)};
-    };
     auto disk = std::make_unique<SceneOnDisk>(std::move(*opened));
+    const auto failed = [&](const Error& error) {
+        const auto said = disk->file.error();
+        return said ? *said : Error{fmt::format("{}: the file {}", path.string(), error.message)};
+    };
     const auto read_bytes = [&file = disk->file](uint64_t offset, std::span<std::byte> to) {
         return file.read(offset, to);
     };
@@ -380,7 +381,7 @@ Result<SceneFile> open_scene_file(const std::filesystem::path& path) {
         return failed(archive.error());
     if (archive->place("levels").bytes == 0)
         return failed({"holds no levels: overcast convert makes one that does"});
-    Result<SceneFile> file = read(std::move(disk), *archive);
+    Result<SceneFile> file = read(disk, *archive);
     return file ? std::move(file) : failed(file.error());
 }
 

@@ -208,17 +208,23 @@ static Result<Done> add_meshes(const PluginDevice& device, ovc_scene scene, cons
     return Done{};
 }
 
+/// Returns what the library says, and where it could not read, why: it only knows that.
+static Result<Done> explained(const SceneOnDisk* on_disk, Result<Done> done) {
+    return done || !on_disk ? std::move(done) : on_disk->explained(done.error());
+}
+
 class PluginBackend final : public Backend {
 public:
     /// watch: that of the scene's config, or null. numbers: of the scene's meshes.
     PluginBackend(PluginDevice device, std::string renderer, std::unique_ptr<BuildWatch> watch,
-                  PluginScene scene, MeshNumbers numbers, bool is_two_level)
+                  PluginScene scene, MeshNumbers numbers, const BackendOptions& options)
         : device_(std::move(device)),
           renderer_(std::move(renderer)),
           watch_(std::move(watch)),
           scene_(std::move(scene)),
           numbers_(std::move(numbers)),
-          is_two_level_(is_two_level) {}
+          on_disk_(options.on_disk),
+          is_two_level_(structure_of(options.kind) == OVC_STRUCTURE_TWO_LEVEL) {}
 
     Result<Done> intersect(std::span<const Ray> rays, const Exclusions& without,
                            std::span<Hit> hits) override {
@@ -234,8 +240,8 @@ public:
         query.passes = notes.passes.empty() ? nullptr : notes.passes.data();
         query.flagged = notes.flagged.empty() ? nullptr : notes.flagged.data();
         const Result<Done> done =
-            device_.checked(api().intersect(scene_.get(), as_abi(rays), rays.size(),
-                                            reinterpret_cast<ovc_hit*>(hits.data()), &query));
+            checked(api().intersect(scene_.get(), as_abi(rays), rays.size(),
+                                    reinterpret_cast<ovc_hit*>(hits.data()), &query));
         if (done)
             numbers_.to_scene(hits);
         return done;
@@ -246,14 +252,14 @@ public:
         assert(occluded.size() == rays.size() && without.are_for(rays.size()));
         const LibraryQuery asked(numbers_, without);
         const ovc_query query = asked.query();
-        return device_.checked(
+        return checked(
             api().occluded(scene_.get(), as_abi(rays), rays.size(), occluded.data(), &query));
     }
 
     Result<Done> stream(StreamHost& host) override {
         CalledBack called(api(), host, numbers_);
         const ovc_stream_host callbacks = called.as_abi();
-        return device_.checked(api().stream(scene_.get(), &callbacks));
+        return checked(api().stream(scene_.get(), &callbacks));
     }
 
     std::optional<ovc_active> take_active() override {
@@ -270,7 +276,7 @@ public:
         std::optional<BuildWatch::Building> watched;
         if (watch_)
             watched.emplace(*watch_);
-        if (const Result<Done> done = device_.checked(api().commit(scene_.get())); !done)
+        if (const Result<Done> done = checked(api().commit(scene_.get())); !done)
             return done.error();
         return true;
     }
@@ -284,7 +290,7 @@ public:
                        ? 0
                        : 1;
         };
-        return device_.checked(api().save(scene_.get(), write, const_cast<ByteSink*>(&sink)));
+        return checked(api().save(scene_.get(), write, const_cast<ByteSink*>(&sink)));
     }
 
     ovc_statistics statistics() const override {
@@ -298,27 +304,30 @@ public:
 
 private:
     const ovc_api& api() const { return *device_.api(); }
+    Result<Done> checked(ovc_result result) const {
+        return explained(on_disk_, device_.checked(result));
+    }
 
     /// Tells the library what has changed in the soup.
     Result<Done> tell(const Soup& soup, const SoupDifference& difference) {
         for (uint32_t mesh = difference.kept; mesh < numbers_.count(); ++mesh)
             if (const auto done =
-                    device_.checked(api().remove_mesh(scene_.get(), numbers_.in_library(mesh)));
+                    checked(api().remove_mesh(scene_.get(), numbers_.in_library(mesh)));
                 !done)
                 return done;
         numbers_.forget_from(difference.kept);
         for (const PrimRange& range : difference.moved) {
             const ovc_mesh part = part_of(soup.chunks[range.mesh], range.first, range.end);
-            if (const auto done = device_.checked(api().update_mesh(
+            if (const auto done = checked(api().update_mesh(
                     scene_.get(), numbers_.in_library(range.mesh), &part, range.first));
                 !done)
                 return done;
         }
         for (const uint32_t mesh : difference.placed) {
             const Transform* transform = soup.chunks[mesh].transform();
-            if (const auto done = device_.checked(
-                    api().update_instance(scene_.get(), numbers_.in_library(mesh),
-                                          transform ? transform->rows[0].data() : nullptr));
+            if (const auto done =
+                    checked(api().update_instance(scene_.get(), numbers_.in_library(mesh),
+                                                  transform ? transform->rows[0].data() : nullptr));
                 !done)
                 return done;
         }
@@ -330,7 +339,8 @@ private:
     std::unique_ptr<BuildWatch> watch_;
     PluginScene scene_; // after those, so that it is destroyed first
     MeshNumbers numbers_;
-    const bool is_two_level_; // the systems of the thesis neither save nor update
+    const SceneOnDisk* const on_disk_; // null where the scene lies in memory
+    const bool is_two_level_;          // the systems of the thesis neither save nor update
 };
 
 /// Warns of a budget beyond the memory. A scene may take less than its budget, so it is no error.
@@ -400,13 +410,14 @@ Result<std::unique_ptr<Backend>> make_plugin_backend(PluginDevice device, const 
         std::optional<BuildWatch::Building> watched;
         if (watch)
             watched.emplace(*watch);
-        const Result<Done> done = device.checked(device.api()->commit(scene->get()));
+        const Result<Done> done =
+            explained(options.on_disk, device.checked(device.api()->commit(scene->get())));
         if (!done)
             return done.error();
     }
-    return std::unique_ptr<Backend>(std::make_unique<PluginBackend>(
-        std::move(device), info->renderer, std::move(watch), std::move(*scene), std::move(numbers),
-        structure_of(options.kind) == OVC_STRUCTURE_TWO_LEVEL));
+    return std::unique_ptr<Backend>(
+        std::make_unique<PluginBackend>(std::move(device), info->renderer, std::move(watch),
+                                        std::move(*scene), std::move(numbers), options));
 }
 
 Result<ovc_plan> make_plugin_plan(const PluginDevice& device, const Soup& soup,

@@ -205,6 +205,9 @@ public:
             return scene.error();
         options->on_disk = scene->on_disk.get();
         SceneSummary summary = summarize(*scene);
+        if (scene->on_disk)
+            if (const auto read = scene->on_disk->checked<Done>(Done{}); !read)
+                return read.error();
         const Result<ovc_plan> plan = make_plan(scene->soup, *options, log);
         summary.needs =
             needs_of(*scene, {/* shadows= */ true, options->precision == OVC_PRECISION_CERTIFIED,
