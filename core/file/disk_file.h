@@ -13,6 +13,10 @@
 
 namespace ovc {
 
+/// Fills `to` with a file's bytes from an offset on, as far as the file goes; `got` receives how
+/// many there were. Returns 0, or the error number of the system.
+int read_file_as_far(int descriptor, uint64_t offset, std::span<std::byte> to, size_t& got);
+
 /// Fills `to` with a file's bytes from an offset on. Returns 0, the error number of the system, or
 /// kFileEnded where bytes are missing.
 inline constexpr int kFileEnded = -1;
@@ -20,6 +24,10 @@ int read_file(int descriptor, uint64_t offset, std::span<std::byte> to);
 
 /// Writes bytes to a file from an offset on. Returns 0, or the error number of the system.
 int write_file(int descriptor, uint64_t offset, Bytes bytes);
+
+/// Writes bytes to a file, a pipe or a device where it stands. Returns 0, or the error number of
+/// the system.
+int append_to_file(int descriptor, Bytes bytes);
 
 /// A file that is cut shorter, or that its disk cannot give, is noted. Any number of threads may
 /// read.
