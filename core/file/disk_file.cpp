@@ -89,12 +89,16 @@ bool DiskFile::read(uint64_t offset, std::span<std::byte> to) const {
     return failed == 0;
 }
 
-std::optional<Error> DiskFile::error() const {
+std::optional<std::string> DiskFile::failure() const {
     const int number = error_number_;
     if (number == 0)
         return std::nullopt;
-    return Error{path_.string() + ": cannot be read: " +
-                 (number == kFileEnded ? "bytes are missing" : std::strerror(number))};
+    return number == kFileEnded ? "bytes are missing" : std::strerror(number);
+}
+
+std::optional<Error> DiskFile::error() const {
+    const std::optional<std::string> why = failure();
+    return why ? std::optional(Error{path_.string() + ": cannot be read: " + *why}) : std::nullopt;
 }
 
 } // namespace ovc

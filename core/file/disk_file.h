@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <optional>
 #include <span>
+#include <string>
 #include <utility>
 
 namespace ovc {
@@ -49,7 +50,10 @@ public:
     int descriptor() const { return descriptor_; }
     /// Returns false where the system refuses; error() then says why.
     bool read(uint64_t offset, std::span<std::byte> to) const;
-    /// Returns the first failure, which names the file; nothing where there was none.
+    const std::filesystem::path& path() const { return path_; }
+    /// Returns why the first read that failed did; nothing where none has.
+    std::optional<std::string> failure() const;
+    /// Returns the same as a sentence that names the file.
     std::optional<Error> error() const;
 
 private:

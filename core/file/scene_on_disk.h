@@ -47,12 +47,12 @@ struct SceneOnDisk {
 
     explicit SceneOnDisk(DiskFile opened) : file(std::move(opened)) {}
 
-    /// Returns the error of whoever only learnt that there are no bytes, with what the disk said
-    /// where it has failed.
+    /// Returns the error of the library, which knows neither the file nor why its disk failed.
     Error explained(Error error) const {
-        const std::optional<Error> said = file.error();
-        if (said && error.kind != ErrorKind::Cancelled)
-            error.message += "; " + said->message;
+        if (error.kind != ErrorKind::Unreadable)
+            return error;
+        const std::optional<std::string> why = file.failure();
+        error.message = file.path().string() + ": " + error.message + (why ? ": " + *why : "");
         return error;
     }
     /// Returns the result of work that read corners. Error: some of them were not there, so that
