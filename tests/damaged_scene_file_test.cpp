@@ -58,7 +58,7 @@ protected:
 
     Opened open(Way way) const {
         Result<SceneFile> file =
-            way == Way::OnDisk ? open_scene_file(path_) : read_scene_file(path_);
+            way == Way::OnDisk ? open_scene_file(path_, kHostBytes) : read_scene_file(path_);
         if (!file)
             return {{}, {}, file.error().message};
         Opened opened{std::move(file->scene), {}, {}};
@@ -93,6 +93,18 @@ protected:
             EXPECT_TRUE(opened.error.starts_with(path_.string() + ": ")) << opened.error;
         }
         return opened.error;
+    }
+
+    /// Returns all that shading may read of the scene, one number for it.
+    static uint64_t all_values(const Scene& scene) {
+        Checksum sum;
+        const auto add = [&](const auto& values) { sum.add(std::as_bytes(std::span(&values, 1))); };
+        for (uint32_t prim = 0; prim < scene.soup.chunks[0].size(); ++prim) {
+            add(scene.soup.chunks[0].triangle(prim));
+            add(scene.normals_of(scene.meshes[0]).of(prim));
+            add(scene.uv_of(scene.meshes[0]).of(prim));
+        }
+        return sum.value();
     }
 
     void write(const std::string& bytes) const { std::ofstream(path_, std::ios::binary) << bytes; }
@@ -197,6 +209,28 @@ TEST_F(DamagedSceneFile, WithAWrongBitGivesRightHitsOrASentence) {
             said += !trace(open(way)).empty();
     }
     EXPECT_GT(said, places.size());
+}
+
+/// The library does not see what the host reads by itself.
+TEST_F(DamagedSceneFile, GivesShadingRightValuesOrASentence) {
+    const auto in_memory = read_scene_file(path_);
+    const auto on_disk = open_scene_file(path_, kHostBytes);
+    ASSERT_TRUE(in_memory && on_disk);
+    EXPECT_EQ(all_values(on_disk->scene), all_values(in_memory->scene));
+    EXPECT_TRUE(on_disk->scene.on_disk->checked<Done>(Done{}));
+    for (const char* name : {"corners", "normals", "uv"}) {
+        std::string damaged = whole_;
+        damaged[parts_[name].offset + parts_[name].bytes / 2] ^= 1;
+        write(damaged);
+        const auto file = open_scene_file(path_, kHostBytes);
+        ASSERT_TRUE(file);
+        all_values(file->scene);
+        const auto read = file->scene.on_disk->checked<Done>(Done{});
+        ASSERT_FALSE(read) << name;
+        EXPECT_TRUE(read.error().message.starts_with(path_.string() + ": triangles ") &&
+                    read.error().message.ends_with("are damaged: their checksum is wrong"))
+            << read.error().message;
+    }
 }
 
 } // namespace

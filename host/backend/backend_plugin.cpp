@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cassert>
 #include <map>
 #include <optional>
@@ -116,13 +117,12 @@ private:
     bool refused_ = false; // the library refused a push
 };
 
-/// Reads corners of a mesh that is stored, which is the user of the C function.
+/// Reads corners of a mesh that is stored, which is the user of the C function. The library checks
+/// them.
 static int read_corners(void* user, uint64_t first, uint64_t count, void* corners) {
     const StoredCorners& stored = *static_cast<const StoredCorners*>(user);
-    return stored.read(uint32_t(first),
-                       {static_cast<std::byte*>(corners), size_t(count) * stored.triangle_bytes()})
-               ? 0
-               : 1;
+    const size_t size = size_t(count) * stored.triangle_bytes();
+    return stored.read_unchecked(uint32_t(first), {static_cast<std::byte*>(corners), size}) ? 0 : 1;
 }
 
 /// Reads what was saved, of the scene that is the user of the C function.
@@ -213,6 +213,16 @@ static Result<Done> explained(const SceneOnDisk* on_disk, Result<Done> done) {
     return done || !on_disk ? std::move(done) : on_disk->explained(done.error());
 }
 
+/// Adds what the host reads and keeps by itself, of one budget with the library.
+static void add_own_share(const SceneOnDisk& disk, ovc_statistics& statistics) {
+    statistics.host_budget_bytes = disk.budget_bytes();
+    statistics.host_budget_peak_bytes += disk.bytes();
+    statistics.disk_reads += disk.misses();
+    statistics.disk_bytes += disk.read_bytes();
+    statistics.disk_hits += disk.hits();
+    statistics.disk_misses += disk.misses();
+}
+
 class PluginBackend final : public Backend {
 public:
     /// watch: that of the scene's config, or null. numbers: of the scene's meshes.
@@ -297,6 +307,8 @@ public:
         ovc_statistics statistics{};
         statistics.struct_size = sizeof(statistics);
         api().statistics(scene_.get(), &statistics);
+        if (on_disk_)
+            add_own_share(*on_disk_, statistics);
         return statistics;
     }
 
@@ -378,12 +390,33 @@ Result<ovc_scene_config> config_of(const BackendOptions& options, const ovc_devi
         config.saved_bytes = options.saved.size();
     }
     if (options.on_disk) {
-        config.host_memory_bytes = options.host_bytes;
+        // At least a byte: 0 would be no limit.
+        config.host_memory_bytes =
+            std::max<uint64_t>(options.on_disk->for_plugin() / options.host_shares, 1);
         config.read_saved = read_saved;
         config.read_user = const_cast<SceneOnDisk*>(options.on_disk);
         config.saved_bytes = options.on_disk->levels_bytes;
     }
     return config;
+}
+
+/// Returns the error of a commit. Where the library's share of host memory is too small, the
+/// sentence names the smallest budget of all.
+static Error why_not_built(const PluginDevice& device, ovc_scene scene,
+                           const BackendOptions& options, const Error& error) {
+    const SceneOnDisk* disk = options.on_disk;
+    if (!disk || error.kind != ErrorKind::OverBudget)
+        return disk ? disk->explained(error) : error;
+    ovc_plan plan{};
+    plan.struct_size = sizeof(plan);
+    if (device.api()->plan(scene, &plan) != OVC_OK ||
+        plan.smallest_host_bytes <= disk->for_plugin() / options.host_shares)
+        return error; // it is the GPU's budget
+    return over_budget(
+        fmt::format("{} bytes of host memory are too few for this scene: the smallest number that "
+                    "works is {}",
+                    disk->budget_bytes(),
+                    disk->smallest_budget(plan.smallest_host_bytes * options.host_shares)));
 }
 
 Result<std::unique_ptr<Backend>> make_plugin_backend(PluginDevice device, const Soup& soup,
@@ -410,10 +443,9 @@ Result<std::unique_ptr<Backend>> make_plugin_backend(PluginDevice device, const 
         std::optional<BuildWatch::Building> watched;
         if (watch)
             watched.emplace(*watch);
-        const Result<Done> done =
-            explained(options.on_disk, device.checked(device.api()->commit(scene->get())));
+        const Result<Done> done = device.checked(device.api()->commit(scene->get()));
         if (!done)
-            return done.error();
+            return why_not_built(device, scene->get(), options, done.error());
     }
     return std::unique_ptr<Backend>(
         std::make_unique<PluginBackend>(std::move(device), info->renderer, std::move(watch),
@@ -436,8 +468,14 @@ Result<ovc_plan> make_plugin_plan(const PluginDevice& device, const Soup& soup,
         return added.error();
     ovc_plan plan{};
     plan.struct_size = sizeof(plan);
-    if (const Result<Done> done = device.checked(device.api()->plan(scene->get(), &plan)); !done)
+    if (const Result<Done> done =
+            explained(options.on_disk, device.checked(device.api()->plan(scene->get(), &plan)));
+        !done)
         return done.error();
+    if (options.on_disk) {
+        plan.host_bytes += options.on_disk->own_bytes();
+        plan.smallest_host_bytes = options.on_disk->smallest_budget(plan.smallest_host_bytes);
+    }
     return plan;
 }
 
