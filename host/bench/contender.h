@@ -64,6 +64,12 @@ public:
     /// null where they do not take part. tree_seconds: what building it took.
     ContenderBuilder(const Soup& soup, const KdTree* tree, double tree_seconds, std::string device,
                      LogSink log);
+    /// Lets the contenders read a scene that lies on a disk, which outlives them. contenders: that
+    /// share its budget.
+    void read_from(const SceneOnDisk& disk, size_t contenders) {
+        on_disk_ = &disk;
+        host_shares_ = uint32_t(contenders);
+    }
     Result<std::unique_ptr<Backend>> build(const Contender& contender);
 
 private:
@@ -75,6 +81,8 @@ private:
     double tree_seconds_;
     std::string device_;
     LogSink log_;
+    const SceneOnDisk* on_disk_ = nullptr;
+    uint32_t host_shares_ = 1;
     std::map<uint32_t, uint64_t> pages_bytes_; // by leaves
 };
 

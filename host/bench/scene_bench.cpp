@@ -90,7 +90,7 @@ struct Reference {
 };
 
 Reference make_reference(const SceneBench& job, const Soup& soup, const BenchSurroundings& around) {
-    if (job.first_is_reference)
+    if (job.first_is_reference || job.host_bytes > 0)
         return {};
     around.progress.show(job.scene + ": building the reference");
     const Stopwatch building;
@@ -107,6 +107,8 @@ Result<Done> bench_soup(const SceneBench& job, const Scene& scene, const Camera&
     const Reference reference = make_reference(job, scene.soup, around);
     ContenderBuilder builder(scene.soup, reference.tree.get(), reference.tree_seconds, job.device,
                              around.log);
+    if (scene.on_disk)
+        builder.read_from(*scene.on_disk, job.contenders.size());
     Result<std::vector<Entrant>> entrants = build_entrants(job, builder, around);
     if (!entrants)
         return entrants.error();
@@ -124,7 +126,7 @@ Result<Done> bench_soup(const SceneBench& job, const Scene& scene, const Camera&
     const Result<Done> done =
         run_contenders(*entrants, *workloads, judge, job.repeats, around.stop, observe, result);
     result.load_after = load_average();
-    return done;
+    return scene.on_disk ? scene.on_disk->checked(done) : done;
 }
 
 } // namespace
@@ -137,7 +139,9 @@ Result<BenchResult> bench_scene(const SceneBench& job, const BenchSurroundings& 
     result.threads = uint32_t(thread_count());
     around.progress.show("reading " + job.scene);
     const Stopwatch import;
-    Result<Scene> scene = open_scene(job.scene, around.log, job.model);
+    ImportOptions options{around.log};
+    options.host_bytes = job.host_bytes;
+    Result<Scene> scene = open_scene(job.scene, options, job.model);
     if (!scene)
         return scene.error();
     result.seconds_import = import.seconds();
