@@ -131,8 +131,8 @@ class File:
         return self.instance() if self.objects and not in_object else self.triangle_mesh()
 
     def instance(self):
-        return (f'AttributeBegin\n{self.transform()}ObjectInstance "{self.rng.choice(self.objects)}"'
-                "\nAttributeEnd\n")
+        name = self.rng.choice(self.objects)
+        return f'AttributeBegin\n{self.transform()}ObjectInstance "{name}"\nAttributeEnd\n'
 
     def items(self, count, depth=0, in_object=False):
         return "".join(f"AttributeBegin\n{self.transform()}{self.item(depth, in_object)}"
