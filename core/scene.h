@@ -128,6 +128,9 @@ struct MeshInfo {
     /// 3 per triangle for a mesh with a cutout, or those of another mesh; else empty.
     std::vector<vec2> uv;
     uint32_t uv_from = kNone;
+    /// Where normals and texture coordinates lie on a disk instead (Scene::on_disk); or null.
+    const StoredValues* stored_normals = nullptr;
+    const StoredValues* stored_uv = nullptr;
     /// Counts the corners that have these in the file and not here: normals that cannot be used or
     /// say nothing new, and texture coordinates, which cutouts alone have a use for.
     uint64_t normals_left_out = 0;
@@ -256,15 +259,18 @@ struct Scene {
     std::unique_ptr<SceneOnDisk> on_disk; // of a scene that need not fit into memory; else null
 
     /// Returns 3 normals per triangle, to be turned by MeshInfo::turn; none if the mesh has none.
-    const std::vector<vec3>& normals_of(const MeshInfo& mesh) const {
+    PerCorner<vec3> normals_of(const MeshInfo& mesh) const {
         assert(mesh.normals_from == kNone || mesh.normals_from < meshes.size());
-        return mesh.normals_from == kNone ? mesh.normals : meshes[mesh.normals_from].normals;
+        const MeshInfo& of = mesh.normals_from == kNone ? mesh : meshes[mesh.normals_from];
+        return of.stored_normals ? PerCorner<vec3>(*of.stored_normals)
+                                 : PerCorner<vec3>(of.normals);
     }
 
     /// Returns 3 texture coordinates per triangle; none if the mesh has none.
-    const std::vector<vec2>& uv_of(const MeshInfo& mesh) const {
+    PerCorner<vec2> uv_of(const MeshInfo& mesh) const {
         assert(mesh.uv_from == kNone || mesh.uv_from < meshes.size());
-        return mesh.uv_from == kNone ? mesh.uv : meshes[mesh.uv_from].uv;
+        const MeshInfo& of = mesh.uv_from == kNone ? mesh : meshes[mesh.uv_from];
+        return of.stored_uv ? PerCorner<vec2>(*of.stored_uv) : PerCorner<vec2>(of.uv);
     }
 
     /// Lets the rays of these kinds (SeenBy) see a mesh, and no others.

@@ -53,8 +53,9 @@ struct ImportOptions {
     std::optional<double> pov_version = {};
     /// Keeps texture coordinates in MeshInfo::uv. Only .ply has them so far.
     bool texture_coordinates = false;
-    /// Leaves the corners of an .ovc file on the disk, and what was built of it (Scene::on_disk).
-    bool on_disk = false;
+    /// The budget of host memory for an .ovc file, whose triangles and what was built of them stay
+    /// on the disk (Scene::on_disk); 0: all of it is to be in memory.
+    uint64_t host_bytes = 0;
     /// Receives every file that is read or looked for in vain; may be null.
     FilesRead* files = nullptr;
     /// Not null: the triangles go to its sink, and the scene that comes back has empty meshes. For

@@ -193,7 +193,8 @@ TEST(Importer, DamagedCompressionIsSaid) {
     flipped[packed.size() - 6] ^= 1; // in the checksum
     folder.write("flipped.obj.gz", flipped);
     EXPECT_EQ(folder.failure("flipped.obj.gz"),
-              "flipped.obj.gz: the compressed data is damaged: incorrect data check");
+              "flipped.obj.gz, byte " + std::to_string(text.size()) +
+                  ": the compressed data is damaged: incorrect data check");
 }
 
 TEST(Importer, AssimpsFormatsSurviveDamage) {

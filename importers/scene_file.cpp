@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The scene file is an archive of the fields, the meshes' extents, the corners, the normals, the
-// texture coordinates and the levels.
+// texture coordinates, the checksums of blocks of those three, and the levels.
 #include "importers/scene_file.h"
 
+#include "core/file/file_blocks.h"
 #include "core/file/value_bytes.h"
 #include "core/function_ref.h"
 #include "importers/readers.h"
@@ -12,6 +13,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <map>
@@ -25,7 +27,11 @@ namespace {
 constexpr std::string_view kKind = "ovc scene";
 /// Raise it with every change of scene_fields.h, and when an importer makes another scene of the
 /// same file.
-constexpr uint32_t kVersion = 7;
+constexpr uint32_t kVersion = 8;
+
+/// The checksums of the blocks (core/file/file_blocks.h) of corners, normals and texture
+/// coordinates.
+constexpr std::array<const char*, 3> kSums{"corner sums", "normal sums", "uv sums"};
 
 /// Where a mesh's corners and normals lie in the other parts.
 struct MeshExtent {
@@ -90,34 +96,43 @@ std::optional<Chunk> chunk_of(const MeshExtent& extent, uint64_t first, uint64_t
     return chunk;
 }
 
-/// Moves the first `count` items to `to`. Returns false if there are fewer.
-template <class T>
-bool take_first(std::span<const T>& items, uint64_t count, std::vector<T>& to) {
-    if (count > items.size())
-        return false;
-    to.assign(items.begin(), items.begin() + ptrdiff_t(count));
-    items = items.subspan(count);
-    return true;
-}
+/// Numbers of corners, normals and texture coordinates.
+struct Amounts {
+    uint64_t corners = 0;
+    uint64_t normals = 0;
+    uint64_t uv = 0;
+};
 
-/// Gives the meshes their corners, which stay where they are, their normals and their texture
-/// coordinates. Returns false if the extents do not use them up exactly.
-bool share_out(std::span<const MeshExtent> extents, uint64_t corners, const OwnChunk& own_chunk,
-               std::span<const vec3> normals, std::span<const vec2> uv, Scene& scene) {
-    uint64_t first = 0;
+/// How meshes get what lies in the large parts.
+struct Sharing {
+    Amounts all;
+    OwnChunk own_chunk;
+    /// Gives a mesh its normals and texture coordinates, which begin behind so many.
+    FunctionRef<void(MeshInfo& mesh, const MeshExtent& extent, const Amounts& first)> give_values;
+};
+
+/// Gives the meshes their corners, their normals and their texture coordinates. Returns false if
+/// the extents do not use them up exactly.
+bool share_out(std::span<const MeshExtent> extents, const Sharing& sharing, Scene& scene) {
+    const Amounts& all = sharing.all;
+    Amounts first;
     if (extents.size() != scene.meshes.size())
         return false;
     for (size_t m = 0; m < extents.size(); ++m) {
         const MeshExtent& extent = extents[m];
-        std::optional<Chunk> chunk = chunk_of(extent, first, corners, own_chunk, scene.soup);
-        if (!chunk || !take_first(normals, extent.normals, scene.meshes[m].normals) ||
-            !take_first(uv, extent.uv, scene.meshes[m].uv))
+        std::optional<Chunk> chunk =
+            chunk_of(extent, first.corners, all.corners, sharing.own_chunk, scene.soup);
+        if (!chunk || extent.normals > all.normals - first.normals ||
+            extent.uv > all.uv - first.uv || extent.normals % 3 || extent.uv % 3)
             return false;
+        sharing.give_values(scene.meshes[m], extent, first);
         chunk->set_mask(extent.mask);
         scene.soup.chunks.push_back(std::move(*chunk));
-        first += extent.corners;
+        first.corners += extent.corners;
+        first.normals += extent.normals;
+        first.uv += extent.uv;
     }
-    return first == corners && normals.empty() && uv.empty();
+    return first.corners == all.corners && first.normals == all.normals && first.uv == all.uv;
 }
 
 /// Checks what the host relies on.
@@ -143,9 +158,9 @@ bool is_sound(const Scene& scene) {
             scene.camera->window->bend <= Bend::Cylinder4);
 }
 
-/// Reads everything but corners and levels. corners: how many there are.
+/// Reads everything but the large parts.
 template <class AnyArchive>
-Result<SceneFile> read(const AnyArchive& archive, uint64_t corners, const OwnChunk& own_chunk) {
+Result<SceneFile> read(const AnyArchive& archive, const Sharing& sharing) {
     const Error unsound{"is damaged: what it holds is no scene"};
     const auto fields = archive.template items<std::byte>("fields");
     if (!fields)
@@ -153,19 +168,17 @@ Result<SceneFile> read(const AnyArchive& archive, uint64_t corners, const OwnChu
     const auto extents = archive.template items<MeshExtent>("extents");
     if (!extents)
         return extents.error();
-    const auto normals = archive.template items<vec3>("normals");
-    if (!normals)
-        return normals.error();
-    const auto uv = archive.template items<vec2>("uv");
-    if (!uv)
-        return uv.error();
     SceneFile file;
     ByteReader reader(*fields);
     reader(file.scene, file.scene.meshes, file.from.request, file.from.files, file.from.warnings);
-    if (!reader.done() || !share_out(*extents, corners, own_chunk, *normals, *uv, file.scene) ||
-        !is_sound(file.scene))
+    if (!reader.done() || !share_out(*extents, sharing, file.scene) || !is_sound(file.scene))
         return unsound;
     return file;
+}
+
+template <class T>
+std::vector<T> copy_of(std::span<const T> values) {
+    return {values.begin(), values.end()};
 }
 
 /// Leaves corners and levels where they are mapped.
@@ -173,27 +186,94 @@ Result<SceneFile> read(const Archive& archive) {
     const auto corners = archive.items<vec3>("corners");
     if (!corners)
         return corners.error();
+    const auto normals = archive.items<vec3>("normals");
+    if (!normals)
+        return normals.error();
+    const auto uv = archive.items<vec2>("uv");
+    if (!uv)
+        return uv.error();
     const auto own_chunk = [&](const MeshExtent& extent, uint64_t first) {
         return Chunk::borrowing(extent.origin, corners->subspan(first, extent.corners));
     };
-    Result<SceneFile> file = read<Archive>(archive, corners->size(), own_chunk);
+    const auto give_values = [&](MeshInfo& mesh, const MeshExtent& extent, const Amounts& first) {
+        mesh.normals = copy_of(normals->subspan(first.normals, extent.normals));
+        mesh.uv = copy_of(uv->subspan(first.uv, extent.uv));
+    };
+    Result<SceneFile> file = read<Archive>(
+        archive, {{corners->size(), normals->size(), uv->size()}, own_chunk, give_values});
     if (file)
         file->scene.saved = archive.unchecked("levels");
     return file;
 }
 
-/// Leaves corners and levels on the disk.
-Result<SceneFile> read(std::unique_ptr<SceneOnDisk> disk, const StoredArchive& archive) {
-    const ArchivePart corners = archive.place("corners"), levels = archive.place("levels");
-    disk->corners_checksum = corners.checksum;
-    disk->levels_offset = levels.offset;
-    disk->levels_bytes = levels.bytes;
+/// A part whose values stay on a disk, three of them for each triangle of the meshes in turn.
+template <class T>
+class StoredPart {
+public:
+    /// first_sum: of its blocks among those of all parts.
+    StoredPart(const ArchivePart& part, std::string what, uint64_t first_sum, uint64_t sums)
+        : part_(part), what_(std::move(what)), next_sum_(first_sum), end_sum_(first_sum + sums) {}
+
+    uint64_t values() const { return part_.bytes / sizeof(T); }
+    /// Returns the values of the next mesh, which begin behind so many.
+    StoredValues next(SceneOnDisk& disk, uint64_t first, uint64_t count) {
+        const FileBlocks blocks(disk.reader(), part_.offset + first * sizeof(T), count / 3,
+                                3 * sizeof(T), next_sum_);
+        next_sum_ += blocks_of(count / 3);
+        return {disk, blocks, what_};
+    }
+    /// Returns whether all blocks had a checksum, and there were no more.
+    bool is_used_up() const { return next_sum_ == end_sum_; }
+
+private:
+    const ArchivePart part_;
+    const std::string what_;
+    uint64_t next_sum_;
+    const uint64_t end_sum_;
+};
+
+/// Leaves values and levels on the disk, which the scene then owns.
+Result<SceneFile> read(std::shared_ptr<const DiskFile> opened, const StoredArchive& archive,
+                       uint64_t host_bytes) {
+    std::vector<uint64_t> sums;
+    std::array<uint64_t, 3> counts{};
+    for (size_t i = 0; i < counts.size(); ++i) {
+        const auto more = archive.items<uint64_t>(kSums[i]);
+        if (!more)
+            return more.error();
+        counts[i] = more->size();
+        sums.insert(sums.end(), more->begin(), more->end());
+    }
+    StoredPart<vec3> corners(archive.place("corners"), "corners", 0, counts[0]);
+    StoredPart<vec3> normals(archive.place("normals"), "normals", counts[0], counts[1]);
+    StoredPart<vec2> uv(archive.place("uv"), "texture coordinates", counts[0] + counts[1],
+                        counts[2]);
+    auto disk = std::make_unique<SceneOnDisk>(std::move(opened), host_bytes, std::move(sums));
+    Checksum all;
+    for (const char* name : {"corners", "normals", "uv"})
+        all.add_value(archive.place(name).checksum);
+    disk->values_checksum = all.value();
+    disk->levels_offset = archive.place("levels").offset;
+    disk->levels_bytes = archive.place("levels").bytes;
     const auto own_chunk = [&](const MeshExtent& extent, uint64_t first) {
         disk->meshes.push_back(
-            std::make_unique<FileCorners>(disk->file, corners.offset + first * sizeof(vec3)));
+            std::make_unique<FileCorners>(corners.next(*disk, first, extent.corners)));
         return Chunk::stored(extent.origin, *disk->meshes.back(), uint32_t(extent.corners / 3));
     };
-    Result<SceneFile> file = read<StoredArchive>(archive, corners.bytes / sizeof(vec3), own_chunk);
+    const auto keep = [&](StoredValues values) {
+        disk->values.push_back(std::make_unique<StoredValues>(std::move(values)));
+        return disk->values.back().get();
+    };
+    const auto give_values = [&](MeshInfo& mesh, const MeshExtent& extent, const Amounts& first) {
+        if (extent.normals > 0)
+            mesh.stored_normals = keep(normals.next(*disk, first.normals, extent.normals));
+        if (extent.uv > 0)
+            mesh.stored_uv = keep(uv.next(*disk, first.uv, extent.uv));
+    };
+    Result<SceneFile> file = read<StoredArchive>(
+        archive, {{corners.values(), normals.values(), uv.values()}, own_chunk, give_values});
+    if (file && !(corners.is_used_up() && normals.is_used_up() && uv.is_used_up()))
+        return Error{"is damaged: it has checksums of other blocks"};
     if (file)
         file->scene.on_disk = std::move(disk);
     return file;
@@ -225,6 +305,15 @@ ByteSink sink_to(ArchiveWriter& writer, const OutputFile& out) {
     };
 }
 
+/// Returns the bytes that the values of each mesh take.
+std::vector<uint64_t> runs_of(std::span<const MeshExtent> extents, uint64_t MeshExtent::*values,
+                              size_t value_bytes) {
+    std::vector<uint64_t> runs;
+    for (const MeshExtent& extent : extents)
+        runs.push_back(extent.*values * value_bytes);
+    return runs;
+}
+
 /// Writes everything but the levels.
 Result<Done> write_front(const Scene& scene, const LargeParts& parts, const Provenance& from,
                          const OutputFile& out, ArchiveWriter& writer) {
@@ -233,15 +322,26 @@ Result<Done> write_front(const Scene& scene, const LargeParts& parts, const Prov
     const ByteSink sink = sink_to(writer, out);
     writer.part<std::byte>("fields", fields.bytes());
     writer.part<MeshExtent>("extents", parts.extents);
+    std::array<std::vector<uint64_t>, 3> sums;
     writer.begin("corners");
-    if (const Result<Done> done = parts.write_corners(sink); !done)
+    auto runs = runs_of(parts.extents, &MeshExtent::corners, sizeof(vec3));
+    if (const auto done =
+            parts.write_corners(summing_blocks(sink, runs, 3 * sizeof(vec3), sums[0]));
+        !done)
         return done;
     writer.begin("normals");
-    if (const Result<Done> done = parts.write_normals(sink); !done)
+    runs = runs_of(parts.extents, &MeshExtent::normals, sizeof(vec3));
+    if (const auto done =
+            parts.write_normals(summing_blocks(sink, runs, 3 * sizeof(vec3), sums[1]));
+        !done)
         return done;
     writer.begin("uv");
+    runs = runs_of(parts.extents, &MeshExtent::uv, sizeof(vec2));
+    const ByteSink uv_sink = summing_blocks(sink, runs, 3 * sizeof(vec2), sums[2]);
     for (const MeshInfo& mesh : scene.meshes)
-        writer.write(bytes_of(std::span<const vec2>(mesh.uv)));
+        uv_sink(bytes_of(std::span<const vec2>(mesh.uv)));
+    for (size_t i = 0; i < sums.size(); ++i)
+        writer.part<uint64_t>(kSums[i], sums[i]);
     return Done{};
 }
 
@@ -329,6 +429,22 @@ Result<Done> finish_scene_file(const SceneFront& front, const SaveLevels& save_l
     return write_levels(save_levels, out, writer);
 }
 
+uint64_t scene_file_bytes(const Scene& scene, uint64_t levels_bytes) {
+    if (scene.on_disk)
+        return scene.on_disk->file.bytes();
+    constexpr uint64_t kFrame = 1024; // header, table, and the gaps between parts
+    ByteWriter fields;
+    fields(scene, scene.meshes);
+    uint64_t bytes = kFrame + fields.bytes().size() + levels_bytes;
+    for (const MeshExtent& extent : extents_of(scene))
+        bytes += sizeof(extent) + extent.corners * sizeof(vec3) + extent.normals * sizeof(vec3) +
+                 extent.uv * sizeof(vec2) +
+                 (blocks_of(extent.corners / 3) + blocks_of(extent.normals / 3) +
+                  blocks_of(extent.uv / 3)) *
+                     sizeof(uint64_t);
+    return bytes;
+}
+
 uint64_t checksum_of(const Scene& scene) {
     ByteWriter fields;
     fields(scene, scene.meshes);
@@ -343,7 +459,7 @@ uint64_t checksum_of(const Scene& scene) {
         sum.add(bytes_of(std::span<const vec2>(scene.meshes[m].uv)));
     }
     if (scene.on_disk)
-        sum.add_value(scene.on_disk->corners_checksum);
+        sum.add_value(scene.on_disk->values_checksum);
     return sum.value();
 }
 
@@ -364,23 +480,24 @@ Result<SceneFile> read_scene_file(const std::filesystem::path& path) {
     return file;
 }
 
-Result<SceneFile> open_scene_file(const std::filesystem::path& path) {
+Result<SceneFile> open_scene_file(const std::filesystem::path& path, uint64_t host_bytes) {
     Result<DiskFile> opened = DiskFile::open(path);
     if (!opened)
         return opened.error();
+    const auto disk = std::make_shared<const DiskFile>(std::move(*opened));
     const auto failed = [&](const Error& error) {
-        return Error{fmt::format("{}: the file {}", path.string(), error.message)};
+        const auto said = disk->error();
+        return said ? *said : Error{fmt::format("{}: the file {}", path.string(), error.message)};
     };
-    auto disk = std::make_unique<SceneOnDisk>(std::move(*opened));
-    const auto read_bytes = [&file = disk->file](uint64_t offset, std::span<std::byte> to) {
-        return file.read(offset, to);
+    const auto read_bytes = [&](uint64_t offset, std::span<std::byte> to) {
+        return disk->read(offset, to);
     };
-    const auto archive = StoredArchive::open(read_bytes, disk->file.bytes(), kKind, kVersion);
+    const auto archive = StoredArchive::open(read_bytes, disk->bytes(), kKind, kVersion);
     if (!archive)
         return failed(archive.error());
     if (archive->place("levels").bytes == 0)
         return failed({"holds no levels: overcast convert makes one that does"});
-    Result<SceneFile> file = read(std::move(disk), *archive);
+    Result<SceneFile> file = read(disk, *archive, host_bytes);
     return file ? std::move(file) : failed(file.error());
 }
 
@@ -434,7 +551,7 @@ Result<SceneFront> open_front(const std::filesystem::path& path, std::vector<Arc
 
 Result<Done> check_front(const std::filesystem::path& path, const SceneFront& front) {
     return of_unfinished(path, front.parts, [](const StoredArchive& archive) {
-        for (const char* name : {"corners", "normals", "uv"})
+        for (const char* name : {"corners", "normals", "uv", kSums[0], kSums[1], kSums[2]})
             if (const Result<Done> fine = archive.check_part(name); !fine)
                 return fine;
         return Result<Done>(Done{});
@@ -444,7 +561,8 @@ Result<Done> check_front(const std::filesystem::path& path, const SceneFront& fr
 /// Repeats the warnings of the time when the scene was made.
 Result<Scene> read_ovc(const std::filesystem::path& path, const ImportOptions& options) {
     note(options.files, path);
-    Result<SceneFile> file = options.on_disk ? open_scene_file(path) : read_scene_file(path);
+    Result<SceneFile> file =
+        options.host_bytes > 0 ? open_scene_file(path, options.host_bytes) : read_scene_file(path);
     if (!file)
         return file.error();
     for (const std::string& warning : file->from.warnings)

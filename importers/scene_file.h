@@ -76,6 +76,10 @@ uint64_t end_of(const SceneFront& front);
 Result<Done> finish_scene_file(const SceneFront& front, const SaveLevels& save_levels,
                                OutputFile& out);
 
+/// Returns how many bytes write_scene_file() would write of a scene in memory whose levels take so
+/// many, within some for the names of files and warnings; of one on a disk, what its file has.
+uint64_t scene_file_bytes(const Scene& scene, uint64_t levels_bytes);
+
 /// Returns a checksum of everything that a picture of the scene depends on, and of its names.
 uint64_t checksum_of(const Scene& scene);
 
@@ -84,8 +88,9 @@ uint64_t checksum_of(const Scene& scene);
 /// begins with the path.
 Result<SceneFile> read_scene_file(const std::filesystem::path& path);
 
-/// Does the same, but leaves corners and levels on the disk, unchecked (Scene::on_disk). Error:
+/// Does the same, but leaves corners, normals, texture coordinates and levels on the disk,
+/// unchecked (Scene::on_disk). host_bytes: the budget of host memory for reading them. Error:
 /// besides, the file holds no levels.
-Result<SceneFile> open_scene_file(const std::filesystem::path& path);
+Result<SceneFile> open_scene_file(const std::filesystem::path& path, uint64_t host_bytes);
 
 } // namespace ovc

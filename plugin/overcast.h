@@ -335,16 +335,19 @@ typedef struct ovc_plan {
     uint64_t level2_bytes;         /* all pages together: to move every page once */
     uint64_t largest_page_bytes;   /* an upper estimate: up to three tenths above the true size */
     uint64_t gpu_budget_bytes;
-    uint64_t smallest_budget_bytes; /* works, as all larger ones do; commit names the same */
+    uint64_t smallest_budget_bytes; /* works, as all larger ones do; commit names the same. With host_memory_bytes about the smallest */
     uint64_t ray_bytes;            /* of the budget, for rays and answers */
     uint64_t level1_bytes;         /* of the budget, for the table of portals: 0 where one frame suits all pages */
     uint64_t pool_bytes;           /* of the budget, for pages: what rays and portals leave, and no more than pages take */
     uint64_t resident_pages;       /* pages that are in the pool at once when commit returns */
-    uint64_t host_bytes;           /* level 1 and level 2 in host memory */
+    uint64_t host_bytes;           /* level 1 and level 2 in host memory; with host_memory_bytes the most that is taken of them */
     uint64_t batch_rays;           /* max rays a pass */
     uint32_t fits;                 /* 0: the budget is too small; commit would be OVC_ERROR_OUT_OF_BUDGET */
     uint32_t reserved;             /* 0 */
     double seconds;                /* that this call took */
+    /* What follows is not filled in where struct_size is that of an earlier header. */
+    uint64_t saved_bytes;          /* that save would write; of a scene with host_memory_bytes exact, for it is saved */
+    uint64_t smallest_host_bytes;  /* the smallest host_memory_bytes that works, exactly; 0: the scene lies in memory */
 } ovc_plan;
 
 /* How a scene stands, and what has been done with it. Fields that are marked + count up from commit

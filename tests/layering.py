@@ -49,7 +49,7 @@ PLACES = {
     r"(oneapi/)?tbb/": ["core/system/parallel.cpp"],
     r"xxhash\.h": ["core/file/checksum.cpp"],
     r"assimp/": ["importers/mesh/assimp.cpp"],
-    r"zlib\.h": ["importers/file/source.cpp", "importers/file/source.h"],
+    r"zlib\.h": ["importers/file/gzip_file.cpp"],
     r"epoxy/": ["gpu/gl/gl.h"],
     r"(EGL|GL|GLES\d?|KHR)/": [],
     r"(OpenEXR/|Imf)": ["host/output/image_exr.cpp"],

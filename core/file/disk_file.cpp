@@ -13,30 +13,49 @@
 
 namespace ovc {
 
-int read_file(int descriptor, uint64_t offset, std::span<std::byte> to) {
-    while (!to.empty()) {
-        const ssize_t done = pread(descriptor, to.data(), to.size(), off_t(offset));
+int read_file_as_far(int descriptor, uint64_t offset, std::span<std::byte> to, size_t& got) {
+    for (got = 0; got < to.size();) {
+        const ssize_t done =
+            pread(descriptor, to.data() + got, to.size() - got, off_t(offset + got));
         if (done < 0 && errno == EINTR)
             continue;
         if (done <= 0)
-            return done < 0 ? errno : kFileEnded;
-        to = to.subspan(size_t(done));
-        offset += uint64_t(done);
+            return done < 0 ? errno : 0;
+        got += size_t(done);
     }
     return 0;
 }
 
-int write_file(int descriptor, uint64_t offset, Bytes bytes) {
+int read_file(int descriptor, uint64_t offset, std::span<std::byte> to) {
+    size_t got = 0;
+    const int failed = read_file_as_far(descriptor, offset, to, got);
+    return failed || got == to.size() ? failed : kFileEnded;
+}
+
+/// Passes all bytes to write(bytes that are left), a call of the system.
+template <class Write>
+static int write_all(Bytes bytes, Write&& write) {
     while (!bytes.empty()) {
-        const ssize_t done = pwrite(descriptor, bytes.data(), bytes.size(), off_t(offset));
+        const ssize_t done = write(bytes);
         if (done < 0 && errno == EINTR)
             continue;
         if (done <= 0)
             return done < 0 ? errno : ENOSPC;
         bytes = bytes.subspan(size_t(done));
-        offset += uint64_t(done);
     }
     return 0;
+}
+
+int write_file(int descriptor, uint64_t offset, Bytes bytes) {
+    const uint64_t end = offset + bytes.size();
+    return write_all(bytes, [&](Bytes left) {
+        return pwrite(descriptor, left.data(), left.size(), off_t(end - left.size()));
+    });
+}
+
+int append_to_file(int descriptor, Bytes bytes) {
+    return write_all(bytes,
+                     [&](Bytes left) { return write(descriptor, left.data(), left.size()); });
 }
 
 Result<DiskFile> DiskFile::open(const std::filesystem::path& path) {
@@ -70,12 +89,16 @@ bool DiskFile::read(uint64_t offset, std::span<std::byte> to) const {
     return failed == 0;
 }
 
-std::optional<Error> DiskFile::error() const {
+std::optional<std::string> DiskFile::failure() const {
     const int number = error_number_;
     if (number == 0)
         return std::nullopt;
-    return Error{path_.string() + ": cannot be read: " +
-                 (number == kFileEnded ? "bytes are missing" : std::strerror(number))};
+    return number == kFileEnded ? "bytes are missing" : std::strerror(number);
+}
+
+std::optional<Error> DiskFile::error() const {
+    const std::optional<std::string> why = failure();
+    return why ? std::optional(Error{path_.string() + ": cannot be read: " + *why}) : std::nullopt;
 }
 
 } // namespace ovc

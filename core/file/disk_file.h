@@ -9,9 +9,14 @@
 #include <filesystem>
 #include <optional>
 #include <span>
+#include <string>
 #include <utility>
 
 namespace ovc {
+
+/// Fills `to` with a file's bytes from an offset on, as far as the file goes; `got` receives how
+/// many there were. Returns 0, or the error number of the system.
+int read_file_as_far(int descriptor, uint64_t offset, std::span<std::byte> to, size_t& got);
 
 /// Fills `to` with a file's bytes from an offset on. Returns 0, the error number of the system, or
 /// kFileEnded where bytes are missing.
@@ -20,6 +25,10 @@ int read_file(int descriptor, uint64_t offset, std::span<std::byte> to);
 
 /// Writes bytes to a file from an offset on. Returns 0, or the error number of the system.
 int write_file(int descriptor, uint64_t offset, Bytes bytes);
+
+/// Writes bytes to a file, a pipe or a device where it stands. Returns 0, or the error number of
+/// the system.
+int append_to_file(int descriptor, Bytes bytes);
 
 /// A file that is cut shorter, or that its disk cannot give, is noted. Any number of threads may
 /// read.
@@ -41,7 +50,10 @@ public:
     int descriptor() const { return descriptor_; }
     /// Returns false where the system refuses; error() then says why.
     bool read(uint64_t offset, std::span<std::byte> to) const;
-    /// Returns the first failure, which names the file; nothing where there was none.
+    const std::filesystem::path& path() const { return path_; }
+    /// Returns why the first read that failed did; nothing where none has.
+    std::optional<std::string> failure() const;
+    /// Returns the same as a sentence that names the file.
     std::optional<Error> error() const;
 
 private:

@@ -167,13 +167,10 @@ Result<BackendOptions> BackendArguments::resolve() const {
         options.gpu_memory = *size;
     }
     if (!host_memory.empty()) {
-        const Result<MemorySize> size = parse_memory_size(host_memory);
-        if (!size)
-            return Error{"--host-memory: " + size.error().message};
-        if (size->share > 0)
-            return Error{
-                fmt::format("--host-memory: found '{}', expected bytes, such as 2G", host_memory)};
-        options.host_bytes = size->bytes;
+        const Result<uint64_t> bytes = parse_host_memory(host_memory);
+        if (!bytes)
+            return bytes.error();
+        options.host_bytes = *bytes;
     }
     if (!leaf_triangles.empty()) {
         const Result<uint64_t> count =

@@ -61,6 +61,15 @@ Result<MemorySize> parse_memory_size(std::string_view text) {
     return bytes >= 1 ? Result<MemorySize>(MemorySize{uint64_t(bytes), 0}) : too_small;
 }
 
+Result<uint64_t> parse_host_memory(std::string_view text) {
+    const Result<MemorySize> size = parse_memory_size(text);
+    if (!size)
+        return Error{"--host-memory: " + size.error().message};
+    if (size->share > 0)
+        return Error{fmt::format("--host-memory: found '{}', expected bytes, such as 2G", text)};
+    return size->bytes;
+}
+
 std::string human_bytes(uint64_t bytes) {
     if (bytes < 1024)
         return fmt::format("{} byte{}", bytes, bytes == 1 ? "" : "s");

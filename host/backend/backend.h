@@ -23,7 +23,7 @@ namespace ovc {
 class DeviceOpening;
 class PluginDevice;
 struct KdTree;
-struct SceneOnDisk;
+class SceneOnDisk;
 struct SoupDifference;
 
 /// A backend is built over one soup, which must outlive it unchanged but for what update() is told
@@ -104,6 +104,7 @@ struct BackendOptions {
     bool tell_active = false; // counts pages for take_active(); two-level only
     BuildWatching watching = BuildWatching::None;
     uint64_t host_bytes = 0;              // of host memory, for a scene on a disk; 0: no limit
+    uint32_t host_shares = 1;             // so many backends share host_bytes evenly
     const SceneOnDisk* on_disk = nullptr; // what was saved lies there; outlives the backend
     ovc_ranks_own ranks_own = OVC_RANKS_OWN_AUTO; // where there are several ranks, like the next
     double rank_timeout = 0;                      // seconds; 0: the library's default

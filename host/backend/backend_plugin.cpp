@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cassert>
 #include <map>
 #include <optional>
@@ -118,13 +119,12 @@ private:
     bool refused_ = false; // the library refused a push
 };
 
-/// Reads corners of a mesh that is stored, which is the user of the C function.
+/// Reads corners of a mesh that is stored, which is the user of the C function. The library checks
+/// them.
 static int read_corners(void* user, uint64_t first, uint64_t count, void* corners) {
     const StoredCorners& stored = *static_cast<const StoredCorners*>(user);
-    return stored.read(uint32_t(first),
-                       {static_cast<std::byte*>(corners), size_t(count) * stored.triangle_bytes()})
-               ? 0
-               : 1;
+    const size_t size = size_t(count) * stored.triangle_bytes();
+    return stored.read_unchecked(uint32_t(first), {static_cast<std::byte*>(corners), size}) ? 0 : 1;
 }
 
 /// Reads what was saved, of the scene that is the user of the C function.
@@ -210,17 +210,33 @@ static Result<Done> add_meshes(const PluginDevice& device, ovc_scene scene, cons
     return Done{};
 }
 
+/// Returns what the library says, and where it could not read, why: it only knows that.
+static Result<Done> explained(const SceneOnDisk* on_disk, Result<Done> done) {
+    return done || !on_disk ? std::move(done) : on_disk->explained(done.error());
+}
+
+/// Adds what the host reads and keeps by itself, of one budget with the library.
+static void add_own_share(const SceneOnDisk& disk, ovc_statistics& statistics) {
+    statistics.host_budget_bytes = disk.budget_bytes();
+    statistics.host_budget_peak_bytes += disk.bytes();
+    statistics.disk_reads += disk.misses();
+    statistics.disk_bytes += disk.read_bytes();
+    statistics.disk_hits += disk.hits();
+    statistics.disk_misses += disk.misses();
+}
+
 class PluginBackend final : public Backend {
 public:
     /// watch: that of the scene's config, or null. numbers: of the scene's meshes.
     PluginBackend(PluginDevice device, std::string renderer, std::unique_ptr<BuildWatch> watch,
-                  PluginScene scene, MeshNumbers numbers, bool is_two_level)
+                  PluginScene scene, MeshNumbers numbers, const BackendOptions& options)
         : device_(std::move(device)),
           renderer_(std::move(renderer)),
           watch_(std::move(watch)),
           scene_(std::move(scene)),
           numbers_(std::move(numbers)),
-          is_two_level_(is_two_level) {}
+          on_disk_(options.on_disk),
+          is_two_level_(structure_of(options.kind) == OVC_STRUCTURE_TWO_LEVEL) {}
 
     Result<Done> intersect(std::span<const Ray> rays, const Exclusions& without,
                            std::span<Hit> hits) override {
@@ -237,8 +253,8 @@ public:
         query.passes = notes.passes.empty() ? nullptr : notes.passes.data();
         query.flagged = notes.flagged.empty() ? nullptr : notes.flagged.data();
         const Result<Done> done =
-            device_.checked(api().intersect(scene_.get(), as_abi(rays), rays.size(),
-                                            reinterpret_cast<ovc_hit*>(hits.data()), &query));
+            checked(api().intersect(scene_.get(), as_abi(rays), rays.size(),
+                                    reinterpret_cast<ovc_hit*>(hits.data()), &query));
         if (done)
             numbers_.to_scene(hits);
         return done;
@@ -250,14 +266,14 @@ public:
         const LibraryQuery asked(numbers_, without);
         ovc_query query = asked.query();
         ends_early(query);
-        return device_.checked(
+        return checked(
             api().occluded(scene_.get(), as_abi(rays), rays.size(), occluded.data(), &query));
     }
 
     Result<Done> stream(StreamHost& host) override {
         CalledBack called(api(), host, numbers_);
         const ovc_stream_host callbacks = called.as_abi();
-        return device_.checked(api().stream(scene_.get(), &callbacks));
+        return checked(api().stream(scene_.get(), &callbacks));
     }
 
     std::optional<ovc_active> take_active() override {
@@ -274,7 +290,7 @@ public:
         std::optional<BuildWatch::Building> watched;
         if (watch_)
             watched.emplace(*watch_);
-        if (const Result<Done> done = device_.checked(api().commit(scene_.get())); !done)
+        if (const Result<Done> done = checked(api().commit(scene_.get())); !done)
             return done.error();
         return true;
     }
@@ -288,13 +304,15 @@ public:
                        ? 0
                        : 1;
         };
-        return device_.checked(api().save(scene_.get(), write, const_cast<ByteSink*>(&sink)));
+        return checked(api().save(scene_.get(), write, const_cast<ByteSink*>(&sink)));
     }
 
     ovc_statistics statistics() const override {
         ovc_statistics statistics{};
         statistics.struct_size = sizeof(statistics);
         api().statistics(scene_.get(), &statistics);
+        if (on_disk_)
+            add_own_share(*on_disk_, statistics);
         return statistics;
     }
 
@@ -302,6 +320,9 @@ public:
 
 private:
     const ovc_api& api() const { return *device_.api(); }
+    Result<Done> checked(ovc_result result) const {
+        return explained(on_disk_, device_.checked(result));
+    }
 
     /// Among ranks, a call may wait for one that has ended; and then there is no time to lose.
     static void ends_early(ovc_query& query) {
@@ -313,22 +334,22 @@ private:
     Result<Done> tell(const Soup& soup, const SoupDifference& difference) {
         for (uint32_t mesh = difference.kept; mesh < numbers_.count(); ++mesh)
             if (const auto done =
-                    device_.checked(api().remove_mesh(scene_.get(), numbers_.in_library(mesh)));
+                    checked(api().remove_mesh(scene_.get(), numbers_.in_library(mesh)));
                 !done)
                 return done;
         numbers_.forget_from(difference.kept);
         for (const PrimRange& range : difference.moved) {
             const ovc_mesh part = part_of(soup.chunks[range.mesh], range.first, range.end);
-            if (const auto done = device_.checked(api().update_mesh(
+            if (const auto done = checked(api().update_mesh(
                     scene_.get(), numbers_.in_library(range.mesh), &part, range.first));
                 !done)
                 return done;
         }
         for (const uint32_t mesh : difference.placed) {
             const Transform* transform = soup.chunks[mesh].transform();
-            if (const auto done = device_.checked(
-                    api().update_instance(scene_.get(), numbers_.in_library(mesh),
-                                          transform ? transform->rows[0].data() : nullptr));
+            if (const auto done =
+                    checked(api().update_instance(scene_.get(), numbers_.in_library(mesh),
+                                                  transform ? transform->rows[0].data() : nullptr));
                 !done)
                 return done;
         }
@@ -340,7 +361,8 @@ private:
     std::unique_ptr<BuildWatch> watch_;
     PluginScene scene_; // after those, so that it is destroyed first
     MeshNumbers numbers_;
-    const bool is_two_level_; // the systems of the thesis neither save nor update
+    const SceneOnDisk* const on_disk_; // null where the scene lies in memory
+    const bool is_two_level_;          // the systems of the thesis neither save nor update
 };
 
 /// Warns of a budget beyond the memory. A scene may take less than its budget, so it is no error.
@@ -378,7 +400,9 @@ Result<ovc_scene_config> config_of(const BackendOptions& options, const ovc_devi
         config.saved_bytes = options.saved.size();
     }
     if (options.on_disk) {
-        config.host_memory_bytes = options.host_bytes;
+        // At least a byte: 0 would be no limit.
+        config.host_memory_bytes =
+            std::max<uint64_t>(options.on_disk->for_plugin() / options.host_shares, 1);
         config.read_saved = read_saved;
         config.read_user = const_cast<SceneOnDisk*>(options.on_disk);
         config.saved_bytes = options.on_disk->levels_bytes;
@@ -390,6 +414,25 @@ Result<ovc_scene_config> config_of(const BackendOptions& options, const ovc_devi
         config.sample_rays = options.sample.size();
     }
     return config;
+}
+
+/// Returns the error of a commit. Where the library's share of host memory is too small, the
+/// sentence names the smallest budget of all.
+static Error why_not_built(const PluginDevice& device, ovc_scene scene,
+                           const BackendOptions& options, const Error& error) {
+    const SceneOnDisk* disk = options.on_disk;
+    if (!disk || error.kind != ErrorKind::OverBudget)
+        return disk ? disk->explained(error) : error;
+    ovc_plan plan{};
+    plan.struct_size = sizeof(plan);
+    if (device.api()->plan(scene, &plan) != OVC_OK ||
+        plan.smallest_host_bytes <= disk->for_plugin() / options.host_shares)
+        return error; // it is the GPU's budget
+    return over_budget(
+        fmt::format("{} bytes of host memory are too few for this scene: the smallest number that "
+                    "works is {}",
+                    disk->budget_bytes(),
+                    disk->smallest_budget(plan.smallest_host_bytes * options.host_shares)));
 }
 
 Result<std::unique_ptr<Backend>> make_plugin_backend(PluginDevice device, const Soup& soup,
@@ -418,11 +461,11 @@ Result<std::unique_ptr<Backend>> make_plugin_backend(PluginDevice device, const 
             watched.emplace(*watch);
         const Result<Done> done = device.checked(device.api()->commit(scene->get()));
         if (!done)
-            return done.error();
+            return why_not_built(device, scene->get(), options, done.error());
     }
-    return std::unique_ptr<Backend>(std::make_unique<PluginBackend>(
-        std::move(device), info->renderer, std::move(watch), std::move(*scene), std::move(numbers),
-        structure_of(options.kind) == OVC_STRUCTURE_TWO_LEVEL));
+    return std::unique_ptr<Backend>(
+        std::make_unique<PluginBackend>(std::move(device), info->renderer, std::move(watch),
+                                        std::move(*scene), std::move(numbers), options));
 }
 
 Result<ovc_plan> make_plugin_plan(const PluginDevice& device, const Soup& soup,
@@ -441,8 +484,14 @@ Result<ovc_plan> make_plugin_plan(const PluginDevice& device, const Soup& soup,
         return added.error();
     ovc_plan plan{};
     plan.struct_size = sizeof(plan);
-    if (const Result<Done> done = device.checked(device.api()->plan(scene->get(), &plan)); !done)
+    if (const Result<Done> done =
+            explained(options.on_disk, device.checked(device.api()->plan(scene->get(), &plan)));
+        !done)
         return done.error();
+    if (options.on_disk) {
+        plan.host_bytes += options.on_disk->own_bytes();
+        plan.smallest_host_bytes = options.on_disk->smallest_budget(plan.smallest_host_bytes);
+    }
     return plan;
 }
 

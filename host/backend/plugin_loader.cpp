@@ -87,9 +87,10 @@ Result<PluginDevice> PluginDevice::open(const ovc_api* api, const std::string& n
 Result<Done> PluginDevice::checked(ovc_result result) const {
     if (result == OVC_OK)
         return Done{};
-    const ErrorKind kind = result == OVC_ERROR_CANCELLED    ? ErrorKind::Cancelled
-                           : result == OVC_ERROR_UNREADABLE ? ErrorKind::Unreadable
-                                                            : ErrorKind::Other;
+    const ErrorKind kind = result == OVC_ERROR_CANCELLED       ? ErrorKind::Cancelled
+                           : result == OVC_ERROR_UNREADABLE    ? ErrorKind::Unreadable
+                           : result == OVC_ERROR_OUT_OF_BUDGET ? ErrorKind::OverBudget
+                                                               : ErrorKind::Other;
     return Error{sentence_of(api_, device_.get(), result), kind};
 }
 

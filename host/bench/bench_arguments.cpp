@@ -4,6 +4,7 @@
 
 #include "core/text/suggestion.h"
 #include "host/arguments/backend_arguments.h"
+#include "host/arguments/memory_size.h"
 #include "host/output/output.h"
 #include "testscenes/catalog.h"
 
@@ -98,6 +99,11 @@ void BenchWords::add_settings_to(CLI::App& app) {
                    "Instead: a share of the bytes of all pages of the scene (30%, all)")
         ->type_name("SHARE,...")
         ->excludes(memory);
+    app.add_option(
+           "--host-memory", host_memory,
+           "All contenders together with so much host memory, 2G, for scenes in .ovc; those "
+           "that hold a scene in memory are left out")
+        ->type_name("SIZE");
     app.add_option("--device", device, "A number or a part of a name from `overcast devices`")
         ->type_name("NAME");
     add_ranks_own(app, ranks_own);
@@ -275,7 +281,7 @@ static Result<Done> understand_kind(const BenchWords& words, BenchJob& job) {
     for (const auto& [name, text] :
          {std::pair("--only", &words.only), std::pair("--leaves", &words.leaves),
           std::pair("--workloads", &words.workloads), std::pair("--gpu-memory", &words.gpu_memory),
-          std::pair("--resident", &words.resident)})
+          std::pair("--host-memory", &words.host_memory), std::pair("--resident", &words.resident)})
         if (!text->empty())
             return Error{
                 fmt::format("{} chooses what is measured itself, without {}", option, name)};
@@ -288,6 +294,32 @@ static Result<Done> understand_kind(const BenchWords& words, BenchJob& job) {
         return Error{fmt::format("{} needs one mesh file, such as the Stanford dragon's, or a test "
                                  "scene",
                                  option)};
+    return Done{};
+}
+
+/// Keeps the contenders that work within a budget of host memory.
+static Result<Done> keep_to_host_memory(const BenchWords& words, BenchJob& job) {
+    if (words.host_memory.empty())
+        return Done{};
+    const Result<uint64_t> bytes = parse_host_memory(words.host_memory);
+    if (!bytes)
+        return bytes.error();
+    job.host_bytes = *bytes;
+    if (!words.leaves.empty())
+        return Error{"--leaves means nothing with --host-memory: the leaves of an .ovc file are "
+                     "built already"};
+    for (const std::string& scene : job.scenes)
+        if (std::filesystem::path(scene).extension() != ".ovc")
+            return Error{fmt::format("--host-memory goes with .ovc files, which overcast convert "
+                                     "makes; found '{}'",
+                                     scene)};
+    const auto beyond =
+        std::stable_partition(job.contenders.begin(), job.contenders.end(),
+                              [](const Contender& c) { return c.kind == ContenderKind::TwoLevel; });
+    job.beyond.assign(beyond, job.contenders.end());
+    job.contenders.erase(beyond, job.contenders.end());
+    if (job.contenders.empty())
+        return Error{"--only: none of these keeps to --host-memory; certified and fast do"};
     return Done{};
 }
 
@@ -335,6 +367,8 @@ Result<BenchJob> understand_bench(const BenchWords& words) {
     if (!contenders)
         return contenders.error();
     job.contenders = std::move(*contenders);
+    if (const Result<Done> fine = keep_to_host_memory(words, job); !fine)
+        return fine.error();
     if (const Result<Done> fine = check_json(job); !fine)
         return fine.error();
     return job;

@@ -32,6 +32,7 @@ struct BenchWords {
     std::string repeats = "5";
     std::string leaves;
     std::string gpu_memory;
+    std::string host_memory;
     std::string resident;
     std::string device;
     std::string ranks_own;
@@ -55,6 +56,8 @@ struct BenchJob {
     ImageSize size;
     uint32_t repeats = 5;
     std::vector<Contender> contenders;
+    uint64_t host_bytes = 0;       // for all contenders of a scene together; 0: no limit
+    std::vector<Contender> beyond; // were asked for, but cannot keep to host_bytes
     std::string device;
     ovc_ranks_own ranks_own = OVC_RANKS_OWN_AUTO;
     std::string json; // a file, "-" for standard output, or empty

@@ -86,6 +86,16 @@ TEST(BenchArguments, ChooseWorkloadsAndHowFarASweepGoes) {
     EXPECT_EQ(understand_bench({.sweep = "leaves", .most = "300"})->most, 300u);
 }
 
+TEST(BenchArguments, LeaveOutWhoeverHoldsAScene) {
+    const Result<BenchJob> job = understand_bench(
+        {.scenes = {"a.ovc"}, .only = "cpu-kdtree,certified,fast", .host_memory = "2G"});
+    ASSERT_TRUE(bool(job)) << job.error().message;
+    EXPECT_EQ(job->host_bytes, uint64_t(2) << 30);
+    EXPECT_EQ(job->contenders.size(), 4u);
+    ASSERT_EQ(job->beyond.size(), 1u);
+    EXPECT_EQ(job->beyond[0].name, "cpu-kdtree");
+}
+
 TEST(BenchArguments, SayWhatIsWrong) {
     const struct {
         BenchWords words;
@@ -102,6 +112,13 @@ TEST(BenchArguments, SayWhatIsWrong) {
         {{.most = "5"}, "--most goes with --sweep rays, triangles or leaves"},
         {{.sweep = "budget", .most = "5"}, "--most goes with --sweep rays, triangles or leaves"},
         {{.sweep = "rays", .most = "x"}, "--most needs a whole number"},
+        {{.scenes = {"a.ovc"}, .host_memory = "50%"}, "expected bytes, such as 2G"},
+        {{.scenes = {"a.ovc", "knot"}, .host_memory = "2G"},
+         "--host-memory goes with .ovc files, which overcast convert makes; found 'knot'"},
+        {{.scenes = {"a.ovc"}, .only = "embree", .host_memory = "2G"},
+         "--only: none of these keeps to --host-memory"},
+        {{.scenes = {"a.ovc"}, .leaves = "8", .host_memory = "2G"}, "--leaves means nothing with"},
+        {{.bars = true, .host_memory = "2G"}, "measured itself, without --host-memory"},
         {{.resident = "12M"}, "--resident needs a share such as 30%, or all, not '12M'"},
         {{.json = "no/such/folder/b.json"}, "does not exist"},
         {{.scenes = {OVC_SOURCE_DIR "/README.md"}, .json = OVC_SOURCE_DIR "/README.md"},

@@ -7,7 +7,10 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
+#include <filesystem>
 #include <map>
+
+#include <unistd.h>
 
 namespace ovc {
 namespace {
@@ -52,6 +55,32 @@ TEST(BenchCommand, CertifiedContendersAnswerAlike) {
         EXPECT_EQ(checksums.size(), 4u);
         EXPECT_NE(checksums["primary"], checksums["diffuse"]);
     }
+}
+
+TEST(BenchCommand, AnswersAreTheSameUnderABudgetOfHostMemory) {
+    if (!there_is_a_device())
+        GTEST_SKIP() << "no device for the plugin";
+    const std::string path = testing::TempDir() + "overcast-bench-" + std::to_string(getpid());
+    const std::string file = path + ".ovc";
+    ASSERT_TRUE(run_command({"convert", "sphere-5", file, "--leaf-triangles", "500", "--quiet"}));
+    const auto checksums = [&](Arguments more) {
+        Arguments words{file, "--only", "certified", "--size", "64x48", "--repeats", "1"};
+        words.insert(words.end(), more.begin(), more.end());
+        std::map<std::string, std::string> found;
+        const nlohmann::json document = bench(words);
+        for (const auto& m : document["scenes"][0]["measurements"]) {
+            EXPECT_EQ(m["differ"], 0);
+            found[m["contender"].get<std::string>() + m["workload"].get<std::string>()] =
+                m["checksum"];
+        }
+        return found;
+    };
+    const auto in_memory = checksums({});
+    EXPECT_EQ(in_memory.size(), 2u * 4);
+    EXPECT_EQ(checksums({"--host-memory", "1M"}), in_memory);
+    EXPECT_THAT(run_command({"bench", file, "--host-memory", "100K"}).error().message,
+                testing::HasSubstr("the smallest number that works is "));
+    std::filesystem::remove(file);
 }
 
 TEST(BenchCommand, GivesABudgetAsAShareOfThePages) {

@@ -2,6 +2,7 @@
 // The table of contenders, the choice among them, and how each is built.
 #include "host/bench/contender.h"
 
+#include "core/file/scene_on_disk.h"
 #include "core/text/suggestion.h"
 #include "host/bench/float_kd_tree.h"
 
@@ -150,6 +151,9 @@ Result<std::unique_ptr<Backend>> ContenderBuilder::build_on_gpu(const Contender&
     options.leaves = contender.leaves.leaves;
     options.gpu_memory = contender.budget.memory;
     options.ranks_own = ranks_own_;
+    options.on_disk = on_disk_;
+    options.host_bytes = on_disk_ ? on_disk_->budget_bytes() : 0;
+    options.host_shares = host_shares_;
     if (contender.budget.pages_share > 0) {
         const Result<uint64_t> bytes = all_pages_bytes(options);
         if (!bytes)

@@ -64,6 +64,12 @@ public:
     /// null where they do not take part. tree_seconds: what building it took.
     ContenderBuilder(const Soup& soup, const KdTree* tree, double tree_seconds, std::string device,
                      LogSink log);
+    /// Lets the contenders read a scene that lies on a disk, which outlives them. contenders: that
+    /// share its budget.
+    void read_from(const SceneOnDisk& disk, size_t contenders) {
+        on_disk_ = &disk;
+        host_shares_ = uint32_t(contenders);
+    }
     Result<std::unique_ptr<Backend>> build(const Contender& contender);
     /// Says which leaves ranks have of scenes that are built from now on.
     void set_ranks_own(ovc_ranks_own own) { ranks_own_ = own; }
@@ -78,6 +84,8 @@ private:
     std::string device_;
     LogSink log_;
     ovc_ranks_own ranks_own_ = OVC_RANKS_OWN_AUTO;
+    const SceneOnDisk* on_disk_ = nullptr;
+    uint32_t host_shares_ = 1;
     std::map<uint32_t, uint64_t> pages_bytes_; // by leaves
 };
 

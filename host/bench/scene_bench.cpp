@@ -91,7 +91,7 @@ struct Reference {
 };
 
 Reference make_reference(const SceneBench& job, const Soup& soup, const BenchSurroundings& around) {
-    if (job.first_is_reference)
+    if (job.first_is_reference || job.host_bytes > 0)
         return {};
     around.progress.show(job.scene + ": building the reference");
     const Stopwatch building;
@@ -125,6 +125,8 @@ Result<Done> bench_soup(const SceneBench& job, const Scene& scene, const Camera&
     ContenderBuilder builder(scene.soup, reference.tree.get(), reference.tree_seconds, job.device,
                              around.log);
     builder.set_ranks_own(job.ranks_own);
+    if (scene.on_disk)
+        builder.read_from(*scene.on_disk, job.contenders.size());
     Result<std::vector<Entrant>> entrants = build_entrants(job, builder, around);
     if (!entrants)
         return entrants.error();
@@ -146,7 +148,9 @@ Result<Done> bench_soup(const SceneBench& job, const Scene& scene, const Camera&
     const Result<Done> done =
         run_contenders(*entrants, *workloads, judge, job.repeats, around.stop, observe, result);
     result.load_after = load_average();
-    return done && ranks ? end_calls(*ranks) : done;
+    if (!done)
+        return scene.on_disk ? scene.on_disk->checked(done) : done;
+    return ranks ? end_calls(*ranks) : done;
 }
 
 } // namespace
@@ -159,7 +163,9 @@ Result<BenchResult> bench_scene(const SceneBench& job, const BenchSurroundings& 
     result.threads = uint32_t(thread_count());
     around.progress.show("reading " + job.scene);
     const Stopwatch import;
-    Result<Scene> scene = open_scene(job.scene, around.log, job.model);
+    ImportOptions options{around.log};
+    options.host_bytes = job.host_bytes;
+    Result<Scene> scene = open_scene(job.scene, options, job.model);
     if (!scene)
         return scene.error();
     result.seconds_import = import.seconds();

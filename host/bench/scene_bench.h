@@ -36,6 +36,9 @@ struct SceneBench {
     /// The first contender is the reference, instead of the CPU KDT, which takes minutes to build
     /// over tens of millions of triangles.
     bool first_is_reference = false;
+    /// What all contenders may take of host memory together, with the scene, which is in .ovc; then
+    /// the first is the reference as well. 0: no limit.
+    uint64_t host_bytes = 0;
 };
 
 /// The ways in which a run of the bench talks to its user.

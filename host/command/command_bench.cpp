@@ -19,6 +19,7 @@
 #include "host/terminal/terminal_line.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -38,6 +39,8 @@ constexpr const char* kBenchExamples = R"(Examples:
       what leaves cost: each row says its time to the first row's
   overcast bench plants --only certified --resident all,30%
       what a budget costs that holds 30 % of the pages
+  overcast bench scan.ovc --host-memory 2G --repeats 3
+      a scene larger than memory: the contenders that read it as they need it
   overcast bench dragon.ply --bars --json bars.json
       the table of what is promised: kernels, builds, import, memory, whole programs
   overcast bench dragon.ply --programs --size 512x512
@@ -89,8 +92,26 @@ Result<Done> save(const BenchJob& job, const std::string& json) {
     return Done{};
 }
 
+/// Says which contenders do not take part, and why.
+void tell_of_left_out(const BenchJob& job, const LogSink& log) {
+    if (job.host_bytes == 0)
+        return;
+    std::vector<std::string> names;
+    for (const Contender& contender : job.beyond)
+        names.push_back(contender.label());
+    say(log, LogLevel::Info,
+        fmt::format("--host-memory: left out, for they hold a scene in memory: {}the CPU KD-tree "
+                    "that judges. Answers are compared with those of {}; {} share the budget",
+                    names.empty() ? "" : fmt::format("{}, and ", fmt::join(names, ", ")),
+                    job.contenders.front().label(),
+                    job.contenders.size() == 1
+                        ? "it and the scene"
+                        : fmt::format("{} contenders", job.contenders.size())));
+}
+
 Result<Done> bench_contenders(const BenchJob& job, const BenchSurroundings& around) {
     std::vector<BenchResult> results;
+    tell_of_left_out(job, around.log);
     for (const std::string& source : job.scenes) {
         if (around.stop())
             break;
@@ -106,6 +127,7 @@ Result<Done> bench_contenders(const BenchJob& job, const BenchSurroundings& arou
         const Ranks* const ranks = Ranks::of_run();
         if (ranks)
             bench.asked.frame = false; // its calls are more than plain rays
+        bench.host_bytes = job.host_bytes;
         Result<BenchResult> result = bench_scene(bench, around);
         if (!result)
             return result.error();

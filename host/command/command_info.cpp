@@ -9,11 +9,13 @@
 #include "host/scene/scene_source.h"
 #include "host/scene/scene_summary.h"
 #include "host/terminal/interrupt.h"
+#include "importers/scene_file.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <cstdio>
+#include <set>
 
 namespace ovc {
 
@@ -50,10 +52,31 @@ static Json materials_json(const Scene& scene) {
     return list;
 }
 
+/// What a scene takes of each kind of memory.
+struct Takes {
+    uint64_t file = 0; // as .ovc
+    uint64_t host = 0;
+    uint64_t gpu = 0;
+};
+
+static Takes takes_of(const Scene& scene, const ovc_plan& plan) {
+    Takes takes{scene_file_bytes(scene, plan.saved_bytes), plan.host_bytes,
+                plan.ray_bytes + plan.level1_bytes + plan.pool_bytes};
+    std::set<Chunk::MeshKey> counted; // instances share the corners of their mesh
+    for (const Chunk& chunk : scene.soup.chunks)
+        if (!chunk.stored_corners() && counted.insert(chunk.mesh_key()).second)
+            takes.host +=
+                bytes_of(chunk.corners()).size() + bytes_of(chunk.double_corners()).size();
+    for (const MeshInfo& mesh : scene.meshes)
+        takes.host += mesh.normals.size() * sizeof(vec3) + mesh.uv.size() * sizeof(vec2);
+    return takes;
+}
+
 /// Returns null where there is no plan. docs/reference/stats.md says what the keys mean.
-static Json plan_json(const Result<ovc_plan>& plan) {
+static Json plan_json(const Scene& scene, const Result<ovc_plan>& plan) {
     if (!plan)
         return nullptr;
+    const Takes takes = takes_of(scene, *plan);
     return {{"leaves", plan->leaves},
             {"leaf_references", plan->leaf_references},
             {"level2_bytes", plan->level2_bytes},
@@ -68,10 +91,13 @@ static Json plan_json(const Result<ovc_plan>& plan) {
             {"resident_pages", plan->resident_pages},
             {"sweep_bytes", plan->level2_bytes},
             {"host_bytes", plan->host_bytes},
+            {"saved_bytes", plan->saved_bytes},
+            {"smallest_host_bytes", plan->smallest_host_bytes},
+            {"takes", {{"file", takes.file}, {"host", takes.host}, {"gpu", takes.gpu}}},
             {"seconds", plan->seconds}};
 }
 
-static std::string plan_text(const Result<ovc_plan>& plan) {
+static std::string plan_text(const Scene& scene, const Result<ovc_plan>& plan) {
     if (!plan)
         return fmt::format("  plan       none: {}\n", plan.error().message);
     const ovc_plan& p = *plan;
@@ -88,6 +114,11 @@ static std::string plan_text(const Result<ovc_plan>& plan) {
                         human_bytes(p.gpu_budget_bytes), human_bytes(p.ray_bytes),
                         human_bytes(p.level1_bytes), human_bytes(p.pool_bytes),
                         human_bytes(p.smallest_budget_bytes));
+    const Takes takes = takes_of(scene, p);
+    text += fmt::format("  takes      {} as a scene file, {} of host memory, {} of GPU memory\n",
+                        human_bytes(takes.file), human_bytes(takes.host), human_bytes(takes.gpu));
+    if (p.smallest_host_bytes > 0)
+        text += fmt::format("  host       {} would do\n", human_bytes(p.smallest_host_bytes));
     if (p.resident_pages == p.leaves)
         return text + "  pages      all fit at once: each is moved once\n";
     return text + fmt::format("  pages      {} of {} fit at once; to move every page once is {}\n",
@@ -120,7 +151,7 @@ static std::string info_json(const Scene& scene, const SceneSummary& s,
           {"several_leaves", s.needs.several_leaves},
           {"certified", s.needs.certified}}},
         {"left_out", left_out},
-        {"plan", plan_json(plan)}};
+        {"plan", plan_json(scene, plan)}};
     if (!s.bounds.empty())
         document["bounds"] = {{"min", as_json(s.bounds.lo)}, {"max", as_json(s.bounds.hi)}};
     return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
@@ -172,7 +203,7 @@ static std::string info_text(const std::string& source, const Scene& scene, cons
                     lights_text(scene), scene.camera ? "given" : "none; render frames the scene");
     text += fmt::format("  needs      {}\n  left out   {}\n", needs_text(s.needs),
                         left_out_text(s.left_out));
-    return text + plan_text(plan);
+    return text + plan_text(scene, plan);
 }
 
 namespace {
@@ -199,12 +230,15 @@ public:
         if (!options)
             return options.error();
         const LogSink log = standard_error_log(*level);
-        source_.on_disk = options->host_bytes > 0;
+        source_.host_bytes = options->host_bytes;
         const Result<Scene> scene = open_scene(source_, log);
         if (!scene)
             return scene.error();
         options->on_disk = scene->on_disk.get();
         SceneSummary summary = summarize(*scene);
+        if (scene->on_disk)
+            if (const auto read = scene->on_disk->checked<Done>(Done{}); !read)
+                return read.error();
         const Result<ovc_plan> plan = make_plan(scene->soup, *options, log);
         summary.needs =
             needs_of(*scene, {/* shadows= */ true, options->precision == OVC_PRECISION_CERTIFIED,

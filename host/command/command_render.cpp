@@ -519,7 +519,7 @@ static Result<RenderJob> understand(const RenderWords& words) {
     if (!backend)
         return backend.error();
     job.backend = *backend;
-    job.scene.on_disk = job.backend.host_bytes > 0;
+    job.scene.host_bytes = job.backend.host_bytes;
     if (words.working_set && job.stats.empty())
         return Error{"--working-set is told in the statistics: --stats FILE.json"};
     if (words.working_set && structure_of(job.backend.kind) != OVC_STRUCTURE_TWO_LEVEL)

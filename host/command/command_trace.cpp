@@ -66,7 +66,7 @@ public:
             standard_error_log(ranks && !ranks->is_first() ? LogLevel::Error : *level);
         use_wide_vectors(*backend_options);
         DeviceOpening opening(*backend_options);
-        source_.on_disk = backend_options->host_bytes > 0;
+        source_.host_bytes = backend_options->host_bytes;
         const Result<Scene> scene = open_scene(source_, log);
         if (!scene)
             return scene.error();

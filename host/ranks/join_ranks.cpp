@@ -26,7 +26,7 @@ Result<Done> join_ranks(BackendOptions& backend, SceneArguments& scene) {
         scene.scenes.size() == 1 && std::filesystem::path(scene.scenes[0]).extension() == ".ovc";
     if (backend.ranks_own == OVC_RANKS_OWN_SHARE && is_scene_file && backend.host_bytes == 0)
         backend.host_bytes = kNoLimit;
-    scene.on_disk = backend.host_bytes > 0;
+    scene.host_bytes = backend.host_bytes;
     return Done{};
 }
 

@@ -193,6 +193,13 @@ private:
         return sum.value();
     }
 
+    /// Returns what was made of the scene; an error where shading missed corners that the backend
+    /// did not.
+    template <class T>
+    Result<T> checked(Result<T> made) const {
+        return scene_.on_disk ? scene_.on_disk->checked(std::move(made)) : std::move(made);
+    }
+
     /// Converts the light of a scene with an assumed_gamma to the linear light that files hold.
     void to_linear(Image& image) const {
         for (vec4& pixel : image.pixels)
@@ -208,7 +215,7 @@ private:
             progress.update(report);
             return !interrupt_.interrupted();
         };
-        return render_picture(scene_, shot.camera, backend_, options_, observe, film);
+        return checked(render_picture(scene_, shot.camera, backend_, options_, observe, film));
     }
 
     Result<Done> save_finished(const View& shot, const Film& film, const FrameStats& frame) {
@@ -264,8 +271,8 @@ private:
         contents.notes = notes_of(frame);
         if (job_.aovs.any()) {
             Result<std::vector<Layer>> traced =
-                trace_aovs(scene_, Pinhole(shot.camera, *options_.part),
-                           Sight(scene_, options_.cutouts), backend_, job_.aovs);
+                checked(trace_aovs(scene_, Pinhole(shot.camera, *options_.part),
+                                   Sight(scene_, options_.cutouts), backend_, job_.aovs));
             if (!traced)
                 return traced.error();
             contents.layers = std::move(*traced);
@@ -438,12 +445,6 @@ static BackendOptions options_for(const RenderJob& job, const Scene& scene) {
     return options;
 }
 
-/// Shading reads corners as well as the backend does.
-static Result<Done> all_was_read(const Scene& scene) {
-    const auto failed = scene.on_disk ? scene.on_disk->file.error() : std::nullopt;
-    return failed ? Result<Done>(*failed) : Done{};
-}
-
 /// Returns rays of the first picture's camera, by which ranks share leaves out.
 static std::vector<Ray> camera_sample(const RenderJob& job, const PicturePart& part,
                                       const Scene& scene) {
@@ -563,8 +564,6 @@ Result<int> render(const RenderJob& job) {
     options.sample = {};
     Stage stage(job, *scene, std::move(*backend), options);
     Result<Done> done = render_shots(job, *there, *part, stage, *scene, log, stats);
-    if (done)
-        done = all_was_read(*scene);
     if (!done)
         return done.error();
     add_what_backend_tells(job, *scene, stage, stats);

@@ -149,13 +149,13 @@ ImportOptions import_options(const SceneArguments& arguments, const LogSink& log
 
 Result<Scene> open_scene(const SceneArguments& arguments, const LogSink& log,
                          std::optional<ImageSize> size, FilesRead* files) {
-    if (arguments.on_disk && !is_one_scene_file(arguments))
+    if (arguments.host_bytes > 0 && !is_one_scene_file(arguments))
         return Error{fmt::format("--host-memory goes with one .ovc file, which overcast convert "
                                  "makes; found '{}'",
                                  arguments.name())};
     ImportOptions options = import_options(arguments, log, files);
     options.size = size;
-    options.on_disk = arguments.on_disk;
+    options.host_bytes = arguments.host_bytes;
     std::vector<NamedScene> scenes;
     for (const std::string& name : arguments.scenes) {
         Result<Scene> scene = open_scene(name, options, arguments.model);

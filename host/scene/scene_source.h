@@ -27,7 +27,7 @@ struct SceneArguments {
     std::string pov_version;   // empty: not given
     std::string world;         // empty: not given
     Moment moment;             // that the scene is to be of
-    bool on_disk = false;      // its triangles need not fit into memory
+    uint64_t host_bytes = 0;   // its triangles need not fit into them; 0: no limit
 
     /// name: the scene's name in the help.
     void add_to(CLI::App& app, const char* name = "SCENE");

@@ -84,7 +84,7 @@ Cutouts::Cutouts(const Scene& scene, Asked asked)
     for (size_t m = 0; m < meshes_.size(); ++m) {
         const MeshInfo& mesh = scene.meshes[m];
         const bool by_shadows = asked == Asked::ByShadowRays;
-        meshes_[m] = {scene.uv_of(mesh).data(), cutout(mesh.cutout),
+        meshes_[m] = {scene.uv_of(mesh), cutout(mesh.cutout),
                       by_shadows ? cutout(mesh.shadow_cutout) : nullptr};
     }
 }
@@ -100,7 +100,7 @@ bool Cutouts::counts(const Hit& hit) const {
     const OfMesh& mesh = meshes_[hit.id.mesh];
     if (!mesh.all && !mesh.shadow)
         return true;
-    const vec2* uv = mesh.uv + 3 * size_t(hit.id.prim);
+    const std::array<vec2, 3> uv = mesh.uv.of(hit.id.prim);
     const dvec2 at =
         (1 - hit.u - hit.v) * dvec2(uv[0]) + hit.u * dvec2(uv[1]) + hit.v * dvec2(uv[2]);
     return (!mesh.all || is_there(*mesh.all, at, hit)) &&

@@ -28,7 +28,7 @@ public:
 private:
     /// The holes of a mesh, and where the texture coordinates of its corners lie.
     struct OfMesh {
-        const vec2* uv = nullptr;
+        PerCorner<vec2> uv{std::span<const vec2>()};
         const Cutout* all = nullptr; // null: no holes
         const Cutout* shadow = nullptr;
     };

@@ -57,10 +57,10 @@ static dvec3 turned(const dmat3& turn, const vec3& normal) {
 
 static dvec3 interpolated_normal(const Scene& scene, const MeshInfo& mesh, const Hit& hit,
                                  const dvec3& fallback) {
-    const std::vector<vec3>& normals = scene.normals_of(mesh);
+    const PerCorner<vec3> normals = scene.normals_of(mesh);
     if (normals.empty())
         return fallback;
-    const vec3* corner = normals.data() + size_t(hit.id.prim) * 3;
+    const std::array<vec3, 3> corner = normals.of(hit.id.prim);
     dvec3 corners[3] = {dvec3(corner[0]), dvec3(corner[1]), dvec3(corner[2])};
     if (mesh.turn != dmat3(1))
         for (int i = 0; i < 3; ++i)

@@ -2,6 +2,8 @@
 // OutputFile writes under a name that nobody else takes, then renames once.
 #include "importers/file/output_file.h"
 
+#include "core/file/disk_file.h"
+
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/stat.h>
@@ -13,6 +15,7 @@
 #include <cerrno>
 #include <climits>
 #include <csignal>
+#include <cstdio>
 #include <cstring>
 
 namespace ovc {
@@ -24,6 +27,7 @@ namespace {
 constexpr size_t kBufferBytes = size_t(1) << 18;
 constexpr int kNamesTried = 100; // killed processes may have left some behind
 constexpr int kMaxLinks = 40;    // the kernel's limit, too
+constexpr mode_t kMode = 0666;   // less the user's mask
 
 /// The file for remove_unfinished_output(), which a signal handler calls. The flag is false while
 /// the name changes.
@@ -69,7 +73,7 @@ bool is_written_through(const struct stat& info) {
 
 struct Temporary {
     fs::path path;
-    std::FILE* file = nullptr; // null: errno says why
+    int descriptor = -1; // errno says why there is none
 };
 
 /// Makes a new file in the target's folder, because rename() does not cross file systems. Its name
@@ -77,9 +81,9 @@ struct Temporary {
 Temporary create_beside(const fs::path& final_path) {
     for (int i = 0; i < kNamesTried; ++i) {
         fs::path path = folder_of(final_path) / fmt::format(".ovc{}-{}", getpid(), i);
-        std::FILE* file = std::fopen(path.c_str(), "wbx");
-        if (file || errno != EEXIST)
-            return {std::move(path), file};
+        const int descriptor = open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kMode);
+        if (descriptor >= 0 || errno != EEXIST)
+            return {std::move(path), descriptor};
     }
     return {};
 }
@@ -113,9 +117,9 @@ Result<Done> OutputFile::check(const fs::path& target) {
         return Done{};
     // Permissions do not tell everything: root may write to /proc, which takes no files.
     const Temporary probe = create_beside(behind_links(target));
-    if (!probe.file)
+    if (probe.descriptor < 0)
         return folder_refused(target, errno);
-    std::fclose(probe.file);
+    close(probe.descriptor);
     unlink(probe.path.c_str());
     return Done{};
 }
@@ -151,24 +155,21 @@ Result<OutputFile> OutputFile::create(const fs::path& target) {
         return write_through(target);
     const fs::path final_path = behind_links(target);
     Temporary temporary = create_beside(final_path);
-    if (!temporary.file)
+    if (temporary.descriptor < 0)
         return folder_refused(target, errno);
     remember_unfinished(temporary.path);
-    std::setvbuf(temporary.file, nullptr, _IOFBF, kBufferBytes);
-    return OutputFile(target, final_path, std::move(temporary.path), temporary.file);
+    return OutputFile(target, final_path, std::move(temporary.path), temporary.descriptor);
 }
 
 Result<OutputFile> OutputFile::go_on(const fs::path& target, const fs::path& unfinished,
                                      uint64_t offset) {
     if (const Result<Done> fine = check_place(target); !fine)
         return fine.error();
-    const int descriptor = open(unfinished.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-    std::FILE* file = descriptor < 0 ? nullptr : fdopen(descriptor, "r+b");
-    if (!file || fseeko(file, off_t(offset), SEEK_SET) != 0)
-        return failed(unfinished, errno);
-    std::setvbuf(file, nullptr, _IOFBF, kBufferBytes);
-    OutputFile out(target, behind_links(target), unfinished, file);
+    OutputFile out(target, behind_links(target), unfinished,
+                   open(unfinished.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, kMode));
     out.stays_ = true;
+    if (out.file_.number() < 0 || lseek(out.file_.number(), off_t(offset), SEEK_SET) < 0)
+        return failed(unfinished, errno);
     return out;
 }
 
@@ -176,24 +177,26 @@ Result<OutputFile> OutputFile::go_on(const fs::path& target, const fs::path& unf
 /// empty it.
 Result<OutputFile> OutputFile::write_through(const fs::path& target) {
     struct stat info;
-    std::FILE* file = nullptr;
     const int standard = stat(target.c_str(), &info) == 0 ? standard_descriptor(info) : -1;
-    if (standard >= 0) {
+    if (standard >= 0)
         std::fflush(standard == STDOUT_FILENO ? stdout : stderr);
-        if (const int copy = dup(standard); copy >= 0 && !(file = fdopen(copy, "wb")))
-            close(copy);
-    } else {
-        file = std::fopen(target.c_str(), "wb");
-    }
-    if (!file)
+    const int descriptor =
+        standard >= 0 ? fcntl(standard, F_DUPFD_CLOEXEC, 0)
+                      : open(target.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, kMode);
+    if (descriptor < 0)
         return failed(target, errno);
-    return OutputFile(target, target, {}, file);
+    return OutputFile(target, target, {}, descriptor);
+}
+
+void OutputFile::Descriptor::close() {
+    if (number_ >= 0)
+        ::close(std::exchange(number_, -1));
 }
 
 OutputFile::~OutputFile() {
-    if (!file_)
+    if (file_.number() < 0)
         return;
-    file_.reset();
+    file_.close();
     if (temporary_.empty() || stays_)
         return;
     std::error_code ec;
@@ -201,29 +204,43 @@ OutputFile::~OutputFile() {
     forget_unfinished();
 }
 
-void OutputFile::write(const void* data, size_t bytes) {
-    assert(file_); // neither committed nor moved from
-    if (error_number_ == 0 && std::fwrite(data, 1, bytes, file_.get()) != bytes)
-        error_number_ = errno;
+void OutputFile::write(const void* data, size_t size) {
+    assert(file_.number() >= 0); // neither committed nor moved from
+    const Bytes bytes(static_cast<const std::byte*>(data), size);
+    if (waiting_.size() + size > kBufferBytes)
+        hand_over_waiting();
+    if (size > kBufferBytes)
+        return hand_over(bytes);
+    waiting_.reserve(kBufferBytes);
+    waiting_.insert(waiting_.end(), bytes.begin(), bytes.end());
+}
+
+void OutputFile::hand_over(Bytes bytes) {
+    if (error_number_ == 0)
+        error_number_ = append_to_file(file_.number(), bytes);
+}
+
+void OutputFile::hand_over_waiting() {
+    hand_over(waiting_);
+    waiting_.clear();
 }
 
 Result<Done> OutputFile::flush() {
-    assert(file_);
-    if (error_number_ == 0 && std::fflush(file_.get()) != 0)
-        error_number_ = errno;
+    assert(file_.number() >= 0);
+    hand_over_waiting();
     return error_number_ == 0 ? Result<Done>(Done{}) : failed(target_, error_number_);
 }
 
 Result<Done> OutputFile::commit() {
-    assert(file_);
     (void)flush();
+    const int file = file_.number();
     // An unfinished file that was begun anew may be longer than what it has become.
-    if (error_number_ == 0 && stays_ && ftruncate(fileno(file_.get()), ftello(file_.get())) != 0)
+    if (error_number_ == 0 && stays_ && ftruncate(file, lseek(file, 0, SEEK_CUR)) != 0)
         error_number_ = errno;
     if (!temporary_.empty()) {
         // fsync() comes before the rename, so that a crash leaves no empty file in the good one's
         // place.
-        if (error_number_ == 0 && fsync(fileno(file_.get())) != 0 && errno != EINVAL)
+        if (error_number_ == 0 && fsync(file) != 0 && errno != EINVAL)
             error_number_ = errno;
         if (error_number_ == 0 && std::rename(temporary_.c_str(), final_path_.c_str()) != 0)
             error_number_ = errno;
@@ -232,7 +249,7 @@ Result<Done> OutputFile::commit() {
         return failed(target_, error_number_);
     if (!stays_)
         forget_unfinished();
-    file_.reset();
+    file_.close();
     return Done{};
 }
 

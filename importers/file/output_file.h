@@ -5,10 +5,10 @@
 #include "core/file/archive.h"
 #include "core/result.h"
 
-#include <cstdio>
 #include <filesystem>
-#include <memory>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 namespace ovc {
 
@@ -54,20 +54,33 @@ public:
     Result<Done> commit();
 
 private:
-    struct CloseFile {
-        void operator()(std::FILE* file) const { std::fclose(file); }
+    /// An open file of the system; -1: none.
+    class Descriptor {
+    public:
+        explicit Descriptor(int number) : number_(number) {}
+        Descriptor(Descriptor&& other) noexcept : number_(std::exchange(other.number_, -1)) {}
+        Descriptor& operator=(Descriptor&&) = delete;
+        ~Descriptor() { close(); }
+
+        int number() const { return number_; }
+        void close();
+
+    private:
+        int number_;
     };
 
     OutputFile(std::filesystem::path target, std::filesystem::path final_path,
-               std::filesystem::path temporary, std::FILE* file)
+               std::filesystem::path temporary, int descriptor)
         : target_(std::move(target)),
           final_path_(std::move(final_path)),
           temporary_(std::move(temporary)),
-          file_(file) {}
+          file_(descriptor) {}
 
     /// Does what check() can do without writing.
     static Result<Done> check_place(const std::filesystem::path& target);
     static Result<OutputFile> write_through(const std::filesystem::path& target);
+    void hand_over(Bytes bytes);
+    void hand_over_waiting();
     static Error failed(const std::filesystem::path& target, int error_number);
     static Error folder_refused(const std::filesystem::path& target, int error_number);
 
@@ -75,8 +88,9 @@ private:
     std::filesystem::path final_path_; // the target with its links followed
     std::filesystem::path temporary_;  // empty: written straight through
     bool stays_ = false;               // where it is not committed
-    std::unique_ptr<std::FILE, CloseFile> file_;
-    int error_number_ = 0; // of the first write that failed
+    Descriptor file_;
+    std::vector<std::byte> waiting_; // written, but not handed to the system yet
+    int error_number_ = 0;           // of the first write that failed
 };
 
 /// Follows the path while its last component is a symbolic link, which may dangle.

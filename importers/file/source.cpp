@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Source reads plain and compressed files by zlib; no other file sees it.
+// Source buffers what a file gives, and finds lines in it.
 #include "importers/file/source.h"
 
 #include "core/text/suggestion.h"
 
 #include <fmt/format.h>
-#include <zlib.h>
 
 #include <algorithm>
 #include <cassert>
@@ -46,18 +45,7 @@ bool ends_text(char c) {
     return c == '\r' || c == '\0' || c == '\x1a';
 }
 
-/// Removes the file's name that zlib begins its sentence with, because our errors begin with it,
-/// too.
-std::string_view without(const std::string& name, std::string_view reason) {
-    const std::string prefix = name + ": ";
-    return reason.starts_with(prefix) ? reason.substr(prefix.size()) : reason;
-}
-
 } // namespace
-
-void Source::CloseFile::operator()(gzFile_s* file) const {
-    gzclose(file);
-}
 
 Result<Source> Source::open(const std::filesystem::path& path, FilesRead* files, Empty empty) {
     note(files, path);
@@ -70,14 +58,13 @@ Result<Source> Source::open(const std::filesystem::path& path, FilesRead* files,
     if (const char* other = other_than_a_file(status.type()))
         return source.error(fmt::format("found {}, which is no regular file", other));
     errno = 0;
-    source.file_.reset(gzopen(path.c_str(), "rb"));
+    source.file_ = GzipFile::open(path);
     if (!source.file_)
         return source.error(fmt::format("cannot be opened: {}", std::strerror(errno)));
-    gzbuffer(source.file_.get(), kBlockBytes);
     source.buffer_.resize(kBlockBytes);
     if (!source.fill(1) && (empty == Empty::Refused || source.is_damaged()))
         return source.error("the file is empty, expected a model");
-    source.is_compressed_ = gzdirect(source.file_.get()) == 0;
+    source.is_compressed_ = source.file_->is_compressed();
     const auto size = std::filesystem::file_size(path, ec);
     if (!ec)
         source.likely_bytes_ = source.is_compressed_ ? size * kLikelyCompression : size;
@@ -108,31 +95,12 @@ bool Source::fill(size_t count) {
     return true;
 }
 
-/// Reads at most `room` bytes; returns how many. `damage` receives the reason if the file could not
-/// give as many as it should.
-static size_t read_some(gzFile_s* file, unsigned char* to, size_t room, const std::string& name,
-                        std::string& damage) {
-    assert(room > 0 && room <= kUnpackedBytes); // zlib counts in int
-    const int got = gzread(file, to, unsigned(room));
-    if (got < int(room)) {
-        int code = Z_OK;
-        const char* reason = gzerror(file, &code);
-        if (code == Z_BUF_ERROR)
-            damage = "the compressed data ends early";
-        else if (code == Z_ERRNO)
-            damage = fmt::format("cannot be read: {}", std::strerror(errno));
-        else if (code != Z_OK && code != Z_STREAM_END)
-            damage = fmt::format("the compressed data is damaged: {}", without(name, reason));
-    }
-    return size_t(std::max(got, 0));
-}
-
 size_t Source::read() {
     // The buffer doubles as the bytes arrive, never to a size that somebody claims.
     if (end_ == buffer_.size())
         buffer_.resize(2 * buffer_.size());
-    const size_t got = read_some(file_.get(), buffer_.data() + end_,
-                                 std::min(buffer_.size() - end_, kBlockBytes), name_, damage_);
+    const size_t room = std::min(buffer_.size() - end_, kBlockBytes);
+    const size_t got = file_->read(std::span(buffer_).subspan(end_, room), damage_);
     end_ += got;
     return got;
 }
@@ -140,10 +108,9 @@ size_t Source::read() {
 /// Takes a block that the other thread unpacked meanwhile.
 size_t Source::read_ahead() {
     if (!unpacked_)
-        unpacked_ = std::make_unique<ReadAhead>([file = file_.get(), name = name_](auto& block) {
+        unpacked_ = std::make_unique<ReadAhead>([file = file_.get()](auto& block) {
             block.bytes.resize(kUnpackedBytes);
-            block.bytes.resize(
-                read_some(file, block.bytes.data(), kUnpackedBytes, name, block.damage));
+            block.bytes.resize(file->read(block.bytes, block.damage));
         });
     const ReadAhead::Block& block = unpacked_->next();
     if (!block.damage.empty())

@@ -4,6 +4,7 @@
 
 #include "core/result.h"
 #include "importers/file/files_read.h"
+#include "importers/file/gzip_file.h"
 #include "importers/file/read_ahead.h"
 
 #include <cstdint>
@@ -13,8 +14,6 @@
 #include <string>
 #include <string_view>
 #include <vector>
-
-struct gzFile_s;
 
 namespace ovc {
 
@@ -73,10 +72,6 @@ public:
     Error error(std::string_view sentence) const;
 
 private:
-    struct CloseFile {
-        void operator()(gzFile_s* file) const;
-    };
-
     Source() = default;
 
     size_t read();
@@ -86,7 +81,7 @@ private:
     void find_line_end();
 
     std::string name_;
-    std::unique_ptr<gzFile_s, CloseFile> file_;
+    std::unique_ptr<GzipFile> file_;
     std::unique_ptr<ReadAhead> unpacked_; // uses file_; null if the file is plain
     std::vector<unsigned char> buffer_;
     size_t begin_ = 0; // of the bytes that are not given out yet

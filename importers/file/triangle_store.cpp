@@ -82,6 +82,11 @@ bool TriangleStore::read_corners(size_t mesh, uint64_t first, std::span<vec3> co
     return read(corners_, corners_.meshes[mesh], first, corners);
 }
 
+bool TriangleStore::read_normals(size_t mesh, uint64_t first, std::span<vec3> normals) const {
+    assert(normals_.waiting.empty());
+    return normals.empty() || read(normals_, normals_.meshes[mesh], first, normals);
+}
+
 bool TriangleStore::read(const Items& items, const Mesh& mesh, uint64_t first, std::span<vec3> to) {
     assert(first + to.size() <= mesh.items);
     auto run = std::ranges::upper_bound(mesh.runs, first, {}, &Run::before);

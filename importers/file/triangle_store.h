@@ -33,6 +33,8 @@ public:
     /// Reads corners of a mesh from its corner `first` on. Any number of threads may call this.
     /// Returns false where the disk fails; error() then says why.
     bool read_corners(size_t mesh, uint64_t first, std::span<vec3> corners) const;
+    /// Does the same with normals.
+    bool read_normals(size_t mesh, uint64_t first, std::span<vec3> normals) const;
 
     /// Passes all corners, or all normals, to a sink, mesh by mesh. Error: the disk fails.
     Result<Done> write_corners(const ByteSink& sink) const { return write(corners_, sink); }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The PLY reader streams polygons and triangle strips, in ASCII and in binary of either byte order.
 #include "core/file/triangle_sink.h"
+#include "importers/file/spilling_array.h"
 #include "importers/mesh/blocks.h"
 #include "importers/mesh/ply_rows.h"
 #include "importers/mesh/polygon.h"
@@ -96,7 +97,9 @@ public:
           header_(header),
           rows_(source),
           with_uv_(options.texture_coordinates),
-          streaming_(options.streaming) {
+          streaming_(options.streaming),
+          vertices_(stored<V>(options.streaming, 2)),
+          normals_(stored<vec3>(options.streaming, 4)) {
         if (const PlyElement* vertices = header.find("vertex"))
             vertex_count_ = vertices->count;
     }
@@ -114,6 +117,8 @@ public:
     }
 
     Error error() const {
+        if (const Error* failed = disk_error())
+            return *failed;
         return is_wanted_ ? rows_.error() : Error{"cancelled", ErrorKind::Cancelled};
     }
     /// Return warnings after read(); left_over() does so once only.
@@ -127,7 +132,7 @@ public:
         Scene scene;
         scene.name = name;
         scene.materials.emplace_back();
-        std::vector<V>().swap(vertices_);
+        vertices_.clear();
         const uint64_t corners = 3 * triangle_count();
         scene.add_mesh(std::move(name), 0, Chunk::owning(origin_, corners_.take()),
                        normals_.empty() ? std::vector<vec3>() : corner_normals_.take());
@@ -140,6 +145,16 @@ public:
     }
 
 private:
+    /// Returns an array that takes a part of the memory where the file streams.
+    template <class T>
+    static SpillingArray<T> stored(const Streaming* streaming, uint64_t part) {
+        return streaming ? SpillingArray<T>(streaming->folder, streaming->host_bytes / part)
+                         : SpillingArray<T>();
+    }
+    const Error* disk_error() const {
+        return vertices_.error() ? vertices_.error() : normals_.error();
+    }
+
     bool read_element(const PlyElement& element) {
         if (&element == header_.find("vertex"))
             return read_vertices(element);
@@ -198,7 +213,7 @@ private:
                 uv_.push_back(uv);
         }
         place_origin();
-        return true;
+        return !disk_error();
     }
 
     bool read_column(const Column& column, V& position, vec3& normal, vec2& uv) {
@@ -223,14 +238,15 @@ private:
             return;
         }
         lost_normals_ = true;
-        std::vector<vec3>().swap(normals_);
+        normals_.clear();
     }
 
     void place_origin() {
         if constexpr (std::same_as<V, dvec3>) {
             Box bounds;
             bool are_floats = true;
-            for (const dvec3& v : vertices_) {
+            for (size_t i = 0; i < vertices_.size(); ++i) {
+                const dvec3 v = vertices_[i];
                 if (!is_finite(v))
                     continue;
                 bounds.add(v);
@@ -323,7 +339,7 @@ private:
                 add_corner(index);
         else
             add_cut(indices);
-        return !streaming_ || corners_.size() < kPart || pass_on();
+        return !streaming_ || (!disk_error() && (corners_.size() < kPart || pass_on()));
     }
 
     void add_cut(std::span<const uint32_t> indices) {
@@ -366,13 +382,13 @@ private:
     const PlyHeader& header_;
     Rows rows_;
     uint64_t vertex_count_ = 0;
-    std::vector<V> vertices_;
-    std::vector<vec3> normals_; // one per vertex, or empty
-    std::vector<vec2> uv_;      // likewise
-    const bool with_uv_;        // they are wanted
+    std::vector<vec2> uv_; // one per vertex, or empty
+    const bool with_uv_;   // they are wanted
     const Streaming* const streaming_;
-    bool is_wanted_ = true;  // by its sink
-    uint64_t passed_on_ = 0; // corners that it has got
+    SpillingArray<V> vertices_;
+    SpillingArray<vec3> normals_; // one per vertex, or empty
+    bool is_wanted_ = true;       // by its sink
+    uint64_t passed_on_ = 0;      // corners that it has got
     bool vertices_ready_ = false;
     bool lost_normals_ = false;
     uint64_t too_short_ = 0; // polygons with fewer than three corners
@@ -447,25 +463,6 @@ std::optional<Error> check(const PlyHeader& header, const Source& source) {
     return std::nullopt;
 }
 
-/// Checks that the vertices, which a stream of faces needs at hand, fit into the memory it may
-/// take.
-std::optional<Error> check_memory(const PlyHeader& header, const Source& source,
-                                  const Streaming& streaming) {
-    const PlyElement* vertices = header.find("vertex");
-    if (!vertices)
-        return std::nullopt;
-    uint64_t bytes = vertices->find("nx") >= 0 ? sizeof(vec3) : 0;
-    bytes += exceeds_float(vertices->properties[size_t(vertices->find("x"))].type) ? sizeof(dvec3)
-                                                                                   : sizeof(vec3);
-    const uint64_t rows =
-        std::min(vertices->count, source.likely_bytes() / vertices->shortest_row(header.format));
-    if (rows * bytes <= streaming.host_bytes)
-        return std::nullopt;
-    return source.error(fmt::format("its {} vertices take {} bytes of host memory, and {} are "
-                                    "allowed: the smallest number that works is {}",
-                                    rows, rows * bytes, streaming.host_bytes, rows * bytes));
-}
-
 } // namespace
 
 Result<Scene> read_ply(const std::filesystem::path& path, const ImportOptions& options) {
@@ -477,9 +474,6 @@ Result<Scene> read_ply(const std::filesystem::path& path, const ImportOptions& o
         return header.error();
     if (const auto error = check(*header, *source))
         return *error;
-    if (options.streaming)
-        if (const auto error = check_memory(*header, *source, *options.streaming))
-            return *error;
     switch (header->format) {
     case PlyFormat::Ascii:
         return read_body<AsciiRows>(*source, *header, path, options);

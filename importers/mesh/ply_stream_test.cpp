@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A PLY file that streams gives its sink the triangles of one that is held.
 #include "importers/expect_stream.h"
+#include "tests/file_size_limit.h"
 
 #include <fmt/format.h>
 
@@ -80,19 +81,30 @@ TEST(PlyStream, EndsWhereTheSinkWantsNoMore) {
     }
 }
 
-TEST(PlyStream, RefusesMoreVerticesThanTheMemoryHolds) {
+/// A page has 1,024 items, and three are in memory at least.
+TEST(PlyStream, VerticesThatDoNotFitWaitOnTheDisk) {
     const TestFolder folder;
-    const auto path = folder.write("a.ply", file_of({vertices(1000, "float", true), faces(10)}));
+    constexpr size_t kMany = 20'000;
+    for (const char* type : {"float", "double"})
+        expect_streams_as_it_loads(
+            folder.write("a.ply", file_of({vertices(2 * kMany + 2, type, true), faces(kMany)})),
+            100'000);
+}
+
+TEST(PlyStream, TellsThatTheDiskIsFull) {
+    const TestFolder folder;
+    const auto path =
+        folder.write("a.ply", file_of({vertices(200'002, "float", true), faces(100'000)}));
+    const test::FileSizeLimit limit(1'000'000);
     FullSink sink;
-    const Streaming streaming{sink, 20'000};
+    sink.wanted = 1000;
+    const Streaming streaming{sink, 100'000, path.parent_path()};
     ImportOptions options;
     options.streaming = &streaming;
     const Result<Scene> scene = load(path, options);
     ASSERT_FALSE(scene);
-    EXPECT_EQ(scene.error().message,
-              path.string() + ": its 1000 vertices take 24000 bytes of host memory, and 20000 are "
-                              "allowed: the smallest number that works is 24000");
-    EXPECT_EQ(sink.parts, 0);
+    EXPECT_TRUE(scene.error().message.ends_with("the scratch file there failed: File too large"))
+        << scene.error().message;
 }
 
 TEST(PlyStream, SomeFormatsStream) {

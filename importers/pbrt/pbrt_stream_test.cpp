@@ -52,6 +52,25 @@ constexpr const char* kRed = "Material \"matte\" \"rgb Kd\" [1 0 0]\n";
 constexpr const char* kHoles =
     "Texture \"t\" \"float\" \"imagemap\" \"string filename\" \"a.pgm\"\n";
 
+/// Returns a PLY file of n x n squares with normals, some of which point away from their triangles.
+std::string ply(size_t n) {
+    std::string text = fmt::format(
+        "ply\nformat ascii 1.0\nelement vertex {}\nproperty float x\nproperty double y\nproperty "
+        "float z\nproperty float nx\nproperty float ny\nproperty float nz\nelement face {}\n"
+        "property list uchar int vertex_indices\nend_header\n",
+        (n + 1) * (n + 1), n * n);
+    for (size_t i = 0; i <= n; ++i)
+        for (size_t j = 0; j <= n; ++j)
+            text += fmt::format("{} {} {} 0 {} {}\n", double(i) / 3, 5e5 + double(j) / 7,
+                                double(i * j % 5) / 9, i % 3, j % 4 == 0 ? -1 : 1);
+    for (size_t i = 0; i < n; ++i)
+        for (size_t j = 0; j < n; ++j) {
+            const size_t a = i * (n + 1) + j, b = a + n + 1;
+            text += fmt::format("4 {} {} {} {}\n", a, b, b + 1, a + 1);
+        }
+    return text;
+}
+
 void write_files(const TestFolder& folder) {
     folder.write("part.pbrt", grid(20, true) + kRound);
     folder.write("a.pgm", "P2\n2 1\n255\n0 255\n");
@@ -59,6 +78,7 @@ void write_files(const TestFolder& folder) {
                                "property float y\nproperty float z\nelement face 1\nproperty list "
                                "uchar int vertex_indices\nend_header\n1e7 0 0\n10000001.3 0 0\n"
                                "10000001 1 0\n1e7 1 0\n4 0 1 2 3\n");
+    folder.write("large.ply", ply(90));
 }
 
 TEST(PbrtStream, MakesTheSceneOfAFileThatIsHeld) {
@@ -69,6 +89,7 @@ TEST(PbrtStream, MakesTheSceneOfAFileThatIsHeld) {
                               grid(3) + "AttributeEnd\n";
     const std::string small = "ObjectBegin \"o\" " + grid(2, true) + "ObjectEnd\n";
     const std::string large = "ObjectBegin \"o\" " + grid(30, true) + kRound + "ObjectEnd\n";
+    const std::string large_ply = "Shape \"plymesh\" \"string filename\" \"large.ply\"\n";
     const std::string place = "ObjectInstance \"o\"\n";
     const struct {
         const char* name;
@@ -81,6 +102,11 @@ TEST(PbrtStream, MakesTheSceneOfAFileThatIsHeld) {
         {"materials.pbrt", repeated(40, grid(9) + kRed + grid(5, true))},
         {"include.pbrt", repeated(30, "Include \"part.pbrt\"")},
         {"ply.pbrt", moved(3, "Shape \"plymesh\" \"string filename\" \"square.ply\"") + kRound},
+        {"plys.pbrt", moved(3, large_ply) + "ReverseOrientation Scale 1 -2 1 " + large_ply + kRed +
+                          grid(3) + large_ply +
+                          "Shape \"plymesh\" \"string filename\" "
+                          "\"large.ply\"" +
+                          holes},
         {"mirrored.pbrt", "Scale -1 1 1 " + grid(9, true) + "ReverseOrientation " + kRound},
         {"far.pbrt", moved(1e7, grid(9)) + moved(1e7 + 5, kRound)},
         {"holes.pbrt", kHoles + repeated(9, grid(8, true, holes)) + grid(3, false, holes)},
@@ -125,6 +151,22 @@ TEST(PbrtStream, ObjectsThatShareTrianglesAreHeldOrRefused) {
     ASSERT_TRUE(write_scene_file(*scene, {}, {}, folder / "a.ovc"));
     ASSERT_TRUE(write_scene_file(*held, {}, {}, folder / "b.ovc"));
     EXPECT_TRUE(folder.read("a.ovc") == folder.read("b.ovc"));
+}
+
+/// Its 180,000 triangles take 13 MB as a shape in memory, and its vertices 2.2 MB.
+TEST(PbrtStream, APlyFileThatDoesNotFitIsReadInParts) {
+    const TestFolder folder;
+    folder.write("large.ply", ply(300));
+    const std::string shape = "Shape \"plymesh\" \"string filename\" \"large.ply\"\n";
+    expect_streams_as_it_loads(folder.write("a.pbrt", kCamera + shape), 1'000'000);
+    // Holes need it at hand.
+    folder.write("a.pgm", "P2\n2 1\n255\n0 255\n");
+    EXPECT_THAT(
+        sentence_of(folder,
+                    std::string(kHoles) + ("Shape \"plymesh\" \"texture alpha\" \"t\" \"string "
+                                           "filename\" \"large.ply\"\n"),
+                    1'000'000),
+        testing::HasSubstr("found a shape that takes "));
 }
 
 TEST(PbrtStream, ErrorsAreSentences) {

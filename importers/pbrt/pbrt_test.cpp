@@ -529,9 +529,9 @@ TEST(Pbrt, NormalsFollowInstances) {
     const dvec3 expected[3] = {{0, 0, 1}, {0, -1, 0}, {0, 1, 0}};
     for (size_t m = 0; m < 3; ++m) {
         const MeshInfo& mesh_info = scene->meshes[m];
-        const auto& normals = scene->normals_of(mesh_info);
+        const auto normals = scene->normals_of(mesh_info);
         ASSERT_EQ(normals.size(), 3u);
-        const dvec3 turned = glm::normalize(mesh_info.turn * dvec3(normals[0]));
+        const dvec3 turned = glm::normalize(mesh_info.turn * dvec3(normals.of(0)[0]));
         EXPECT_LT(glm::length(turned - expected[m]), 1e-6) << m;
     }
 }

@@ -14,7 +14,7 @@ namespace {
 constexpr uint64_t kSmall = 4096, kLargestRun = uint64_t(1) << 20;
 
 bool belongs(const Run& run, const Shape& shape) {
-    return run.material == shape.material && run.has_normals == !shape.mesh.normals.empty() &&
+    return run.material == shape.material && run.has_normals == shape.mesh.has_normals() &&
            run.sight == shape.sight && run.triangles + shape.mesh.size() <= kLargestRun &&
            shape.mesh.size() <= kSmall && run.last_size <= kSmall;
 }
@@ -31,7 +31,7 @@ void append(const Shape& shape, size_t index, std::vector<Run>& runs) {
     if (shape.mesh.size() == 0)
         return;
     if (runs.empty() || !belongs(runs.back(), shape))
-        runs.push_back({index, index, 0, shape.material, !shape.mesh.normals.empty(), shape.sight,
+        runs.push_back({index, index, 0, shape.material, shape.mesh.has_normals(), shape.sight,
                         shape.mesh.name});
     Run& run = runs.back();
     run.last = index + 1;

@@ -63,10 +63,29 @@ Result<Done> StreamedShapes::add(const Shape& shape, const Place& place) {
     }
     if (const Result<Done> fine = check(shape, place); !fine)
         return fine;
-    add_triangles(shape);
+    if (shape.mesh.on_disk)
+        add_stored(shape);
+    else
+        add_triangles(shape);
     if (error())
         return *error();
+    if (shape.mesh.on_disk && shape.mesh.on_disk->error())
+        return *shape.mesh.on_disk->error();
     return Done{};
+}
+
+/// Adds triangles that wait on a disk, some at a time.
+void StreamedShapes::add_stored(const Shape& shape) {
+    const TriangleStore& store = *shape.mesh.on_disk;
+    Shape part{{.origin = shape.mesh.origin}, shape.to_object, shape.material, shape.reversed};
+    for (uint64_t first = 0; first < store.corners(0); first += part.mesh.corners.size()) {
+        part.mesh.corners.resize(std::min(3 * kTrianglesOfPart, store.corners(0) - first));
+        part.mesh.normals.resize(store.normals(0) > 0 ? part.mesh.corners.size() : 0);
+        if (!store.read_corners(0, first, part.mesh.corners) ||
+            !store.read_normals(0, first, part.mesh.normals))
+            return;
+        add_triangles(part);
+    }
 }
 
 void StreamedShapes::add_triangles(const Shape& shape) {

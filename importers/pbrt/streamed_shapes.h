@@ -32,6 +32,7 @@ public:
 private:
     Result<Done> check(const Shape& shape, const Place& place) const;
     void add_triangles(const Shape& shape);
+    void add_stored(const Shape& shape);
 
     const uint64_t host_bytes_;
     ScratchArray<dvec3> corners_; // of the world

@@ -115,18 +115,23 @@ ovc_result plan(ovc_scene scene, ovc_plan* plan) {
     return on_scene(scene, "plan", [&] {
         if (!plan)
             invalid("plan: plan is NULL");
-        if (scene->store)
-            invalid("plan: what was saved is built already");
-        check_size<ovc_plan>("ovc_plan", plan->struct_size, sizeof(ovc_plan));
+        const size_t size = plan->struct_size;
+        check_size<ovc_plan>("ovc_plan", size, offsetof(ovc_plan, saved_bytes));
+        if (scene->store && scene->structure)
+            invalid("plan: the scene, which lies on a disk, is committed already");
         const Stopwatch watch;
+        ovc_plan all{};
         with_progress(scene->config, "plan", [&](BuildProgress* progress) {
             const Result<ovc_plan> told =
-                plan_structure(scene->soup, scene->device->gl->info(), scene->config, progress);
+                plan_structure(scene->soup, scene->device->gl->info(), scene->config, progress,
+                               scene->store.get());
             if (!told)
                 throw Failure{code_of(told.error().kind, OVC_ERROR_INTERNAL), told.error().message};
-            *plan = *told;
+            all = *told;
         });
-        plan->seconds = watch.seconds();
+        all.seconds = watch.seconds();
+        all.struct_size = size;
+        std::memcpy(plan, &all, size);
     });
 }
 

@@ -531,7 +531,8 @@ Result<Done> check_key(const StoredArchive& archive, const StoredTables& tables,
     return Done{};
 }
 
-Result<BuiltScene> open_levels(LeafStore& store, const Soup& soup) {
+/// opens: else the store only learns what it would keep.
+Result<BuiltScene> open_levels(LeafStore& store, const Soup& soup, bool opens) {
     const Stopwatch watch;
     const Result<StoredArchive> archive =
         StoredArchive::open(store.read(), store.saved_bytes(), kKind, kVersion);
@@ -560,19 +561,17 @@ Result<BuiltScene> open_levels(LeafStore& store, const Soup& soup) {
     Result<BuiltScene> scene = restored(arrays, tables->cuts, soup);
     if (!scene)
         return scene.error();
-    if (const Result<Done> opened =
-            store.open(std::move(places), StoredPageCheck(*scene, scene->pages), bytes);
-        !opened)
-        return opened.error();
+    store.set_pages(std::move(places), bytes);
+    if (opens)
+        if (const auto opened = store.open(StoredPageCheck(*scene, scene->pages)); !opened)
+            return opened.error();
     scene->store = &store;
     scene->from_saved = true;
     scene->seconds_level1 = watch.seconds();
     return scene;
 }
 
-} // namespace
-
-Result<BuiltScene> open_stored_levels(LeafStore& store, const Soup& soup) {
+Result<BuiltScene> read_levels(LeafStore& store, const Soup& soup, bool opens) {
     std::mutex mutex;
     std::optional<Error> failed; // corners of instances are looked at
     store.on_failure([&](Error error) {
@@ -580,9 +579,28 @@ Result<BuiltScene> open_stored_levels(LeafStore& store, const Soup& soup) {
         if (!failed)
             failed = std::move(error);
     });
-    Result<BuiltScene> scene = open_levels(store, soup);
+    Result<BuiltScene> scene = open_levels(store, soup, opens);
     store.on_failure({});
     return failed ? std::move(*failed) : std::move(scene);
+}
+
+} // namespace
+
+Result<BuiltScene> open_stored_levels(LeafStore& store, const Soup& soup) {
+    return read_levels(store, soup, /* opens= */ true);
+}
+
+Result<BuiltScene> look_at_stored_levels(LeafStore& store, const Soup& soup) {
+    return read_levels(store, soup, /* opens= */ false);
+}
+
+uint64_t saved_bytes(const LevelsSize& size) {
+    constexpr uint64_t kParts = 10;
+    return size.page_bytes + size.references * sizeof(TriangleId) +
+           size.leaves * (sizeof(SavedLeaf) + sizeof(SavedPage) + kHeadTexels * sizeof(uvec4)) +
+           size.nodes * sizeof(KdNode) + size.duplicates * sizeof(Duplicates::Pair) +
+           size.corner_blocks * sizeof(uint64_t) + size.cuts * sizeof(SavedCut) + sizeof(Key) +
+           kParts * (sizeof(ArchivePart) + kPartAlignment);
 }
 
 } // namespace ovc

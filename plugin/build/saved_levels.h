@@ -103,4 +103,21 @@ restore_levels(Bytes saved, const Soup& soup,
 /// of the kind OverBudget, where it names the smallest budget of the store that works.
 Result<BuiltScene> open_stored_levels(LeafStore& store, const Soup& soup);
 
+/// Does the same whatever the budget, for a plan: the store gives no page, but knows what it would
+/// keep.
+Result<BuiltScene> look_at_stored_levels(LeafStore& store, const Soup& soup);
+
+/// What the number of bytes of saved levels depends on.
+struct LevelsSize {
+    uint64_t page_bytes = 0;
+    uint64_t references = 0;
+    uint64_t leaves = 0;
+    uint64_t nodes = 0;
+    uint64_t duplicates = 0;
+    uint64_t corner_blocks = 0;
+    uint64_t cuts = 1;
+};
+/// Returns about how many bytes save_levels() writes of levels of that size.
+uint64_t saved_bytes(const LevelsSize& size);
+
 } // namespace ovc

@@ -47,24 +47,6 @@ const StoredCorners& LeafStore::add_mesh(uint64_t triangles, bool has_doubles, R
     return *meshes_.back();
 }
 
-namespace {
-
-/// What pages and corners may take of a budget.
-struct Shares {
-    uint64_t pages;
-    uint64_t corners;
-};
-
-/// Corners get a quarter, more where pages do not need the rest, and no more than there are.
-Shares share_out(uint64_t bytes, uint64_t all_pages, uint64_t all_corners, uint64_t min_corners) {
-    const uint64_t rest = bytes - std::min(bytes, all_pages);
-    const uint64_t corners =
-        std::max(min_corners, std::min(all_corners, std::max(bytes / 4, rest)));
-    return {std::min(bytes - corners, all_pages), corners};
-}
-
-} // namespace
-
 std::span<const uvec4> LeafStore::keep_heads(std::vector<uvec4> heads) {
     heads_ = std::move(heads);
     return heads_;
@@ -77,36 +59,62 @@ void LeafStore::set_sums(const CornerSums& sums) {
             meshes_[static_cast<const Mesh*>(mesh.stored)->number]->first_sum = mesh.first_sum;
 }
 
-Result<Done> LeafStore::open(std::vector<PagePlace> pages, CheckPage check, uint64_t table_bytes) {
+void LeafStore::set_pages(std::vector<PagePlace> pages, uint64_t table_bytes) {
+    pages_ = std::move(pages);
+    table_bytes_ = table_bytes + sums_.size() * sizeof(uint64_t);
+}
+
+uint64_t LeafStore::block_bytes() const {
     size_t triangle_bytes = 1;
     for (const auto& mesh : meshes_)
         triangle_bytes = std::max(triangle_bytes, mesh->triangle_bytes());
-    const uint64_t block_bytes = kCornerBlock * triangle_bytes;
-    uint64_t all_pages = 1, largest = 1;
-    std::vector<uint64_t> page_bytes;
-    for (const PagePlace& page : pages) {
-        page_bytes.push_back(page.bytes);
-        all_pages += page.bytes;
+    return kCornerBlock * triangle_bytes;
+}
+
+uint64_t LeafStore::page_bytes() const {
+    uint64_t bytes = 1;
+    for (const PagePlace& page : pages_)
+        bytes += page.bytes;
+    return bytes;
+}
+
+uint64_t LeafStore::smallest_bytes() const {
+    uint64_t largest = 1;
+    for (const PagePlace& page : pages_)
         largest = std::max(largest, page.bytes);
-    }
-    const uint64_t tables = table_bytes + sums_.size() * sizeof(uint64_t);
-    const uint64_t min_corners = CornerCache::min_bytes(block_bytes);
-    const uint64_t smallest = tables + min_corners + 2 * largest * 4 / 3 + 1;
-    if (budget_ < smallest)
+    return table_bytes_ + BlockCache::min_bytes(block_bytes()) + 2 * largest * 4 / 3 + 1;
+}
+
+/// Corners get a quarter, more where pages do not need the rest, and no more than there are. Blocks
+/// share places, so that there is room for a few more than all of them.
+LeafStore::Shares LeafStore::shares() const {
+    const uint64_t bytes = budget_ - std::min(budget_, table_bytes_);
+    const uint64_t all_pages = page_bytes(), all_corners = sums_.size() * block_bytes() * 5 / 4;
+    const uint64_t rest = bytes - std::min(bytes, all_pages);
+    const uint64_t corners = std::max(BlockCache::min_bytes(block_bytes()),
+                                      std::min(all_corners, std::max(bytes / 4, rest)));
+    return {std::min(bytes - std::min(bytes, corners), all_pages), corners};
+}
+
+uint64_t LeafStore::max_bytes() const {
+    const uint64_t all_corners = sums_.size() * block_bytes();
+    return table_bytes_ + shares().pages + std::min(shares().corners, all_corners);
+}
+
+Result<Done> LeafStore::open(CheckPage check) {
+    if (budget_ < smallest_bytes())
         return over_budget(
             format_text("{} bytes of host memory are too few for this scene: the smallest number "
                         "that works is {}",
-                        budget_, smallest));
-    // Blocks share places, so that there is room for a few more than all of them.
-    const Shares shares =
-        share_out(budget_ - tables, all_pages, sums_.size() * block_bytes * 5 / 4, min_corners);
-    assert(shares.pages >= std::min(2 * largest, all_pages)); // see PageCache
-    pages_ = std::move(pages);
+                        budget_, smallest_bytes()));
     check_ = std::move(check);
-    table_bytes_ = tables;
-    corner_cache_ = std::make_unique<CornerCache>(block_bytes, shares.corners);
+    std::vector<uint64_t> bytes;
+    for (const PagePlace& page : pages_)
+        bytes.push_back(page.bytes);
+    // Any two pages fit; see PageCache.
+    corner_cache_ = std::make_unique<BlockCache>(block_bytes(), shares().corners);
     page_cache_ = std::make_unique<PageCache>(
-        std::move(page_bytes), shares.pages,
+        std::move(bytes), shares().pages,
         [this](uint32_t number, std::span<std::byte> to) { return fill_page(number, to); });
     return Done{};
 }

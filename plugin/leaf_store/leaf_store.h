@@ -4,9 +4,9 @@
 #pragma once
 
 #include "core/file/archive.h"
+#include "core/file/block_cache.h"
 #include "core/file/stored_corners.h"
 #include "core/result.h"
-#include "plugin/leaf_store/corner_cache.h"
 #include "plugin/leaf_store/corner_sums.h"
 #include "plugin/leaf_store/page_cache.h"
 
@@ -51,9 +51,16 @@ public:
     std::span<const uvec4> keep_heads(std::vector<uvec4> heads);
     /// Takes the checksums of the meshes' corners, whose SummedMesh::stored are of add_mesh().
     void set_sums(const CornerSums& sums);
-    /// Shares the budget out, after set_sums(). table_bytes: what else of the scene is kept in
-    /// memory. Error of the kind OverBudget: names the smallest budget that works.
-    Result<Done> open(std::vector<PagePlace> pages, CheckPage check, uint64_t table_bytes);
+    /// Takes the pages, after set_sums(). table_bytes: what else of the scene is kept in memory.
+    void set_pages(std::vector<PagePlace> pages, uint64_t table_bytes);
+    /// Shares the budget out, after set_pages(). Error of the kind OverBudget: names the smallest
+    /// budget that works.
+    Result<Done> open(CheckPage check);
+
+    /// Return, after set_pages(), the smallest budget that works, and the most that is taken of the
+    /// one there is.
+    uint64_t smallest_bytes() const;
+    uint64_t max_bytes() const;
 
     /// Returns a page; nothing where it cannot be read.
     PageCache::Pin page(uint32_t number);
@@ -78,6 +85,15 @@ public:
 private:
     class Mesh;
 
+    /// What pages and corners may take.
+    struct Shares {
+        uint64_t pages;
+        uint64_t corners;
+    };
+    uint64_t block_bytes() const;
+    uint64_t page_bytes() const;
+    Shares shares() const;
+
     Result<Done> fill_page(uint32_t number, std::span<std::byte> to);
     bool fill_block(const Mesh& mesh, uint32_t block, std::span<std::byte> to);
     bool copy_corners(const Mesh& mesh, uint32_t first, std::span<std::byte> to);
@@ -95,8 +111,8 @@ private:
     uint64_t table_bytes_ = 0;
     std::atomic<uint64_t> reads_{0}, read_bytes_{0};
     std::function<void(Error)> tell_;
-    std::unique_ptr<CornerCache> corner_cache_; // after open()
-    std::unique_ptr<PageCache> page_cache_;     // likewise; its threads end first
+    std::unique_ptr<BlockCache> corner_cache_; // after open()
+    std::unique_ptr<PageCache> page_cache_;    // likewise; its threads end first
 };
 
 } // namespace ovc

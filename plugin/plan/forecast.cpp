@@ -9,6 +9,7 @@
 #include "kdtree/sample.h"
 #include "plugin/build/build_scene.h"
 #include "plugin/build/level2.h"
+#include "plugin/build/saved_levels.h"
 #include "plugin/plan/one_leaf.h"
 #include "plugin/plan/page_rate.h"
 
@@ -182,6 +183,84 @@ Result<Sizes> sizes_of(BuiltScene& scene, const Hittable& hittable, BuildProgres
     return sizes_of(scene);
 }
 
+/// The sizes of all cuts of a scene, and the numbers that memory depends on besides.
+struct AllSizes {
+    Sizes cuts;
+    uint64_t portals = 0;
+    uint64_t duplicates = 0;
+    uint64_t cut_count = 1;
+};
+
+/// Fills in what follows from the sizes, which are of at least one page. host_bytes is left.
+void fill_in(ovc_plan& plan, const AllSizes& all, const Soup& soup, const MemoryPlan& memory) {
+    const Sizes& sizes = all.cuts;
+    plan.leaves = sizes.pages.size();
+    plan.leaf_references = sizes.references;
+    plan.level2_bytes = sizes.level2_bytes();
+    plan.largest_page_bytes = sizes.largest_page;
+    plan.level1_bytes = all.portals > 1 ? (1 + all.portals) * kPortalBytes : 0;
+    plan.fits = plan.fits && plan.level1_bytes <= memory.buffer_bytes;
+    plan.saved_bytes = saved_bytes({plan.level2_bytes, sizes.references, plan.leaves, sizes.nodes,
+                                    all.duplicates, unsummed(soup).sums.size(), all.cut_count});
+    const uint64_t room = memory.pool_bytes - std::min(memory.pool_bytes, plan.level1_bytes);
+    uint64_t tree = expected_top_level_bytes(max_links(plan.leaves, plan.level2_bytes, room),
+                                             plan.level2_bytes);
+    if (all.portals > 1) // inner nodes above the portals add a third
+        tree += all.portals * OVC_UNIT_BYTES * 4 / 3 + 2 * sizes.parts * OVC_UNIT_BYTES;
+    const Fit fit = fit_in(sizes.pages, {room, memory.buffer_bytes}, tree);
+    plan.resident_pages = fit.pages;
+    if (plan.fits)
+        plan.pool_bytes = fit.pages == sizes.pages.size() ? fit.pool_bytes : room;
+    plan.host_bytes = plan.level2_bytes + plan.leaf_references * sizeof(TriangleId) +
+                      plan.leaves * sizeof(Leaf) + sizes.nodes * sizeof(KdNode) + tree +
+                      (all.portals > 1 ? (1 + all.portals) * sizeof(Portal) : 0);
+}
+
+/// Returns a plan that knows no sizes yet.
+ovc_plan begun_plan(const BuiltScene& scene, const MemoryPlan& memory) {
+    ovc_plan plan{};
+    plan.struct_size = sizeof(plan);
+    plan.triangles = scene.soup.triangle_count();
+    plan.hittable = scene.triangles + scene.duplicate_count();
+    for (const SharedMesh& mesh : scene.shared)
+        plan.hittable += mesh.scene.triangles * mesh.places.size();
+    plan.gpu_budget_bytes = memory.budget_bytes;
+    plan.ray_bytes = memory.ray_bytes();
+    plan.batch_rays = memory.batch_rays;
+    return plan;
+}
+
+/// Returns the plan of a scene that was saved, whose sizes are there to be read.
+Result<ovc_plan> plan_of_saved(const Soup& soup, const TwoLevelOptions& options,
+                               const MemoryPlan& memory, const DeviceInfo& device) {
+    LeafStore& store = *options.store;
+    Result<BuiltScene> scene = look_at_stored_levels(store, soup);
+    if (!scene)
+        return Error{"what was saved " + scene.error().message, ErrorKind::Unreadable};
+    ovc_plan plan = begun_plan(*scene, memory);
+    AllSizes all{sizes_of(*scene)};
+    all.portals = all.cuts.parts;
+    for (const SharedMesh& mesh : scene->shared) {
+        Sizes more = sizes_of(mesh.scene);
+        more.pages.clear(); // they are among those of the scene
+        all.portals += more.parts * mesh.places.size();
+        all.cuts.add(more);
+    }
+    const uint64_t leaves = all.cuts.pages.size();
+    const uint64_t needed = (1 + all.portals) * kPortalBytes + max_top_level_bytes(1) +
+                            leaves * kMaxBytesPerPart + all.cuts.largest_page;
+    plan.fits = add_tree(*scene, options, memory);
+    plan.smallest_budget_bytes = smallest_budget(needed, device); // about
+    if (plan.fits)
+        plan.smallest_budget_bytes = std::min(plan.smallest_budget_bytes, memory.budget_bytes);
+    if (leaves > 0)
+        fill_in(plan, all, soup, memory);
+    plan.saved_bytes = store.saved_bytes();
+    plan.host_bytes = store.max_bytes();
+    plan.smallest_host_bytes = store.smallest_bytes();
+    return plan;
+}
+
 } // namespace
 
 Result<ovc_plan> forecast(const Soup& soup, const TwoLevelOptions& options,
@@ -189,55 +268,36 @@ Result<ovc_plan> forecast(const Soup& soup, const TwoLevelOptions& options,
     const Result<MemoryPlan> memory = plan_memory(soup, options, device);
     if (!memory)
         return memory.error();
+    if (options.store)
+        return plan_of_saved(soup, options, *memory, device);
     BuiltScene scene(soup);
     Placed placed = placed_chunks(soup);
     const SmallestCut cut = smallest_cut(soup, placed, options);
     begin(progress, "planning", 1, 6 * unique_triangles(soup, placed));
     const HittableParts hittable = take_hittable_parts(scene, std::move(placed), progress);
     set_limits(scene, options, *memory);
-    ovc_plan plan{};
-    plan.struct_size = sizeof(plan);
-    plan.triangles = soup.triangle_count();
-    plan.hittable = scene.triangles + scene.duplicate_count();
-    for (const SharedMesh& mesh : scene.shared)
-        plan.hittable += mesh.scene.triangles * mesh.places.size();
-    plan.gpu_budget_bytes = memory->budget_bytes;
+    ovc_plan plan = begun_plan(scene, *memory);
     plan.smallest_budget_bytes = smallest_budget(cut.pool_bytes, device);
-    plan.ray_bytes = memory->ray_bytes();
-    plan.batch_rays = memory->batch_rays;
     plan.fits = memory->pool_bytes >= cut.pool_bytes;
+    AllSizes all;
     Result<Sizes> first = sizes_of(scene, hittable.once, progress);
     if (!first)
         return first.error();
-    Sizes sizes = std::move(*first);
-    uint64_t portals = sizes.parts;
+    all.cuts = std::move(*first);
+    all.portals = all.cuts.parts;
+    all.duplicates = scene.duplicates.count();
+    all.cut_count = 1 + scene.shared.size();
     for (size_t i = 0; i < scene.shared.size(); ++i) {
+        const SharedMesh& mesh = scene.shared[i];
         const Result<Sizes> more = sizes_of(scene.shared[i].scene, hittable.shared[i], progress);
         if (!more)
             return more.error();
-        sizes.add(*more);
-        portals += more->parts * scene.shared[i].places.size();
+        all.cuts.add(*more);
+        all.portals += more->parts * mesh.places.size();
+        all.duplicates += mesh.scene.duplicates.count();
     }
-    if (sizes.pages.empty())
-        return plan;
-    plan.leaves = sizes.pages.size();
-    plan.leaf_references = sizes.references;
-    plan.level2_bytes = sizes.level2_bytes();
-    plan.largest_page_bytes = sizes.largest_page;
-    plan.level1_bytes = portals > 1 ? (1 + portals) * kPortalBytes : 0;
-    plan.fits = plan.fits && plan.level1_bytes <= memory->buffer_bytes;
-    const uint64_t room = memory->pool_bytes - std::min(memory->pool_bytes, plan.level1_bytes);
-    uint64_t tree = expected_top_level_bytes(max_links(plan.leaves, plan.level2_bytes, room),
-                                             plan.level2_bytes);
-    if (portals > 1) // inner nodes above the portals add a third
-        tree += portals * OVC_UNIT_BYTES * 4 / 3 + 2 * sizes.parts * OVC_UNIT_BYTES;
-    const Fit fit = fit_in(sizes.pages, {room, memory->buffer_bytes}, tree);
-    plan.resident_pages = fit.pages;
-    if (plan.fits)
-        plan.pool_bytes = fit.pages == sizes.pages.size() ? fit.pool_bytes : room;
-    plan.host_bytes = plan.level2_bytes + plan.leaf_references * sizeof(TriangleId) +
-                      plan.leaves * sizeof(Leaf) + sizes.nodes * sizeof(KdNode) + tree +
-                      (portals > 1 ? (1 + portals) * sizeof(Portal) : 0);
+    if (!all.cuts.pages.empty())
+        fill_in(plan, all, soup, *memory);
     return plan;
 }
 

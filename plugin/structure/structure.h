@@ -117,10 +117,11 @@ Result<Done> save_structure(const StreamedScene& scene, const DeviceInfo& device
                             const ovc_scene_config& config, const ByteSink& sink,
                             const LogSink& log, BuildProgress* progress = nullptr);
 
-/// Tells what make_structure() would make; ovc_plan.seconds is left to the caller. Throws as
-/// make_structure() does. Error: the budget is too small for any scene, or the structure cannot
-/// tell.
+/// Tells what make_structure() would make of the soup, or of what the store reads; ovc_plan.seconds
+/// is left to the caller. Throws as make_structure() does. Error: the GPU's budget is too small for
+/// any scene, the structure cannot tell, or what the store reads is damaged.
 Result<ovc_plan> plan_structure(const Soup& soup, const DeviceInfo& device,
-                                const ovc_scene_config& config, BuildProgress* progress = nullptr);
+                                const ovc_scene_config& config, BuildProgress* progress = nullptr,
+                                LeafStore* store = nullptr);
 
 } // namespace ovc

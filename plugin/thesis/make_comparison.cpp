@@ -73,7 +73,7 @@ void check_config(const ovc_scene_config& config, const DeviceInfo& device) {
 }
 
 Result<ovc_plan> plan_structure(const Soup&, const DeviceInfo&, const ovc_scene_config& config,
-                                BuildProgress*) {
+                                BuildProgress*, LeafStore*) {
     refuse(format_text("plan: what {} takes is known only once it is built; two-level "
                        "(libovercast.so) can tell before",
                        thesis::name_of(ovc_structure(config.structure))));

@@ -31,8 +31,11 @@ Result<std::unique_ptr<Structure>> make_structure(const Soup& soup, GlThread& gl
 }
 
 Result<ovc_plan> plan_structure(const Soup& soup, const DeviceInfo& device,
-                                const ovc_scene_config& config, BuildProgress* progress) {
-    return forecast(soup, two_level_options(config), device, progress);
+                                const ovc_scene_config& config, BuildProgress* progress,
+                                LeafStore* store) {
+    TwoLevelOptions options = two_level_options(config);
+    options.store = store;
+    return forecast(soup, options, device, progress);
 }
 
 Result<Done> save_structure(const StreamedScene& scene, const DeviceInfo& device,

@@ -33,6 +33,16 @@ protected:
         return statistics;
     }
 
+    uint64_t saved_bytes_of(ovc_scene scene) const {
+        uint64_t all = 0;
+        const auto count = [](void* user, const void*, size_t size) {
+            *static_cast<uint64_t*>(user) += size;
+            return 0;
+        };
+        EXPECT_EQ(api().save(scene, count, &all), OVC_OK) << error();
+        return all;
+    }
+
     /// Plans, commits and compares. Returns the statistics of the commit.
     ovc_statistics compare(const Soup& soup, const ovc_scene_config& config) const {
         const auto scene = test::add_soup(device, soup, config);
@@ -54,6 +64,7 @@ protected:
         near("host bytes", plan.host_bytes, made.host_bytes);
         EXPECT_EQ(plan.gpu_budget_bytes, made.gpu_budget_bytes);
         // The plan's parts add up to what commit allocates.
+        near("saved bytes", plan.saved_bytes, saved_bytes_of(scene.get()), 4096);
         near("GPU bytes", plan.ray_bytes + plan.level1_bytes + plan.pool_bytes,
              made.gpu_peak_bytes);
         return made;

@@ -237,9 +237,20 @@ TEST_F(Stored, AnswersAreTheSameBitsUnderAnyBudgets) {
                  {uint64_t(0), std::max<uint64_t>(before.level2_bytes / 10, 64 << 10)}) {
                 SCOPED_TRACE(std::to_string(host) + " and " + std::to_string(gpu) + " bytes");
                 auto scene = disk.scene(device, disk.config(host, gpu));
+                auto plan = test::sized<ovc_plan>();
+                ASSERT_EQ(api().plan(scene.get(), &plan), OVC_OK) << error();
                 ASSERT_EQ(api().commit(scene.get()), OVC_OK) << error();
                 ask(scene, rays).expect_same(expected);
                 const ovc_statistics after = test::statistics(scene);
+                EXPECT_EQ(plan.leaves, after.leaves);
+                EXPECT_EQ(plan.leaf_references, after.leaf_references);
+                EXPECT_EQ(plan.level2_bytes, after.level2_bytes);
+                EXPECT_EQ(plan.largest_page_bytes, after.largest_page_bytes);
+                EXPECT_EQ(plan.saved_bytes, disk.saved().size());
+                EXPECT_EQ(plan.smallest_host_bytes, smallest);
+                EXPECT_EQ(plan.fits, 1u);
+                EXPECT_LE(plan.host_bytes, host);
+                EXPECT_GE(plan.host_bytes, after.host_budget_peak_bytes);
                 EXPECT_EQ(after.leaves, before.leaves);
                 EXPECT_EQ(after.leaf_references, before.leaf_references);
                 EXPECT_EQ(after.level2_bytes, before.level2_bytes);
@@ -453,8 +464,8 @@ TEST_F(Stored, MisuseIsRefused) {
     EXPECT_EQ(api().update_instance(scene.get(), 0, nullptr), OVC_ERROR_INVALID_STATE);
     EXPECT_EQ(api().remove_mesh(scene.get(), 0), OVC_ERROR_INVALID_STATE);
     auto plan = test::sized<ovc_plan>();
-    EXPECT_EQ(api().plan(scene.get(), &plan), OVC_ERROR_INVALID_ARGUMENT);
-    test::answers(scene, several.rays); // nothing has changed
+    EXPECT_EQ(api().plan(scene.get(), &plan), OVC_ERROR_INVALID_ARGUMENT); // it is committed
+    test::answers(scene, several.rays);                                    // nothing has changed
 }
 
 } // namespace

@@ -59,6 +59,10 @@ ssize_t write(int file, const void* from, size_t size) {
     return now < 0 ? now : NEXT(write)(file, from, (size_t)now);
 }
 
+int fsync(int file) {
+    return allowed("fsync", file, 1) < 0 ? -1 : NEXT(fsync)(file);
+}
+
 ssize_t pread64(int file, void* to, size_t size, off64_t at) {
     const ssize_t now = allowed("pread", file, size);
     return now < 0 ? now : NEXT(pread64)(file, to, (size_t)now, at);

@@ -192,7 +192,7 @@ void fuzz_ovc(const uint8_t* data, size_t size) {
     const std::string path = file.holding(memory.bytes().data(), memory.size());
     check(read_ovc(path, {}));
     ImportOptions on_disk;
-    on_disk.on_disk = true;
+    on_disk.host_bytes = 1 << 20;
     check(read_ovc(path, on_disk));
 }
 

@@ -28,6 +28,9 @@ bool Interpreter::shape() {
                          left,
                          options_.tolerance.value_or(kTolerance),
                          sight && sight->has_cutout()};
+    // Objects, holes and area lights need triangles at hand.
+    if (streamed_ && building_.empty() && !state_.now.emission && !request.wants_uv)
+        request.streaming = options_.streaming;
     std::optional<Mesh> mesh = make_shape(request);
     if (diagnostics_.failed())
         return false;

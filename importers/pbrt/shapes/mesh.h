@@ -4,9 +4,11 @@
 
 #include "core/box.h"
 #include "core/vec.h"
+#include "importers/file/triangle_store.h"
 
 #include <cassert>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -23,9 +25,15 @@ struct Mesh {
     std::vector<vec3> corners;
     std::vector<vec3> normals;
     std::vector<vec2> uv;
+    /// The corners and normals of a PLY file that is not to be in memory, instead; or null. The
+    /// functions below do not see them.
+    std::shared_ptr<const TriangleStore> on_disk;
     uint64_t normals_left_out = 0, texture_coordinates_left_out = 0; // as in MeshInfo
 
-    uint64_t size() const { return (indices.size() + corners.size()) / 3; }
+    uint64_t size() const {
+        return (indices.size() + corners.size() + (on_disk ? on_disk->corners(0) : 0)) / 3;
+    }
+    bool has_normals() const { return !normals.empty() || (on_disk && on_disk->normals(0) > 0); }
     bool is_indexed() const { return corners.empty(); }
 
     /// Returns corner c, which belongs to triangle c / 3.

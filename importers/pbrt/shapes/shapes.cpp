@@ -141,6 +141,31 @@ std::optional<Mesh> make_triangle_mesh(ShapeRequest& request) {
     return mesh;
 }
 
+/// Whether the triangles of a PLY file, which may be compressed, might take more than a quarter of
+/// the memory that reading may take.
+static bool is_large(const std::filesystem::path& path, const Streaming& streaming) {
+    constexpr uint64_t kMemoryPerByte = 16;
+    std::error_code ec;
+    const uint64_t bytes = std::filesystem::file_size(path, ec);
+    return !ec && bytes > streaming.host_bytes / 4 / kMemoryPerByte;
+}
+
+/// Takes the triangles of a PLY file.
+struct Waiting {
+    std::shared_ptr<TriangleStore> store;
+    Streaming streaming;
+
+    /// Its vertices may take as much memory as a shape.
+    static Result<Waiting> create(const Streaming& whole) {
+        Result<TriangleStore> made = TriangleStore::create(whole.folder);
+        if (!made)
+            return made.error();
+        auto store = std::make_shared<TriangleStore>(std::move(*made));
+        const Streaming streaming{*store, whole.host_bytes / 4, whole.folder};
+        return Waiting{std::move(store), streaming};
+    }
+};
+
 std::optional<Mesh> make_ply_mesh(ShapeRequest& request) {
     const std::string name = request.parameters.text("filename");
     const auto path = request.tokens.find(name);
@@ -152,13 +177,30 @@ std::optional<Mesh> make_ply_mesh(ShapeRequest& request) {
     options.log = request.diagnostics.log();
     options.files = request.tokens.files_read();
     options.texture_coordinates = request.wants_uv;
+    Mesh mesh;
+    std::optional<Waiting> waiting;
+    if (request.streaming && is_large(*path, *request.streaming)) {
+        Result<Waiting> made = Waiting::create(*request.streaming);
+        if (!made) {
+            request.diagnostics.fail(made.error());
+            return std::nullopt;
+        }
+        waiting.emplace(std::move(*made));
+        options.streaming = &waiting->streaming;
+    }
     Result<Scene> scene = read_ply(*path, options);
+    if (waiting) {
+        if (const Result<Done> stored = waiting->store->finish(); !stored) {
+            request.diagnostics.fail(stored.error());
+            return std::nullopt;
+        }
+        mesh.on_disk = waiting->store;
+    }
     if (!scene) {
         request.diagnostics.missing("file " + name, request.place,
                                     fmt::format("a plymesh left out: {}", scene.error().message));
         return std::nullopt;
     }
-    Mesh mesh;
     mesh.name = path->stem().string();
     assert(scene->soup.chunks.size() == 1 && scene->meshes.size() == 1);
     Chunk& chunk = scene->soup.chunks[0];

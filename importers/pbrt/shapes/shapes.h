@@ -18,6 +18,8 @@ struct ShapeRequest {
     uint64_t max_triangles; // the number that the scene still allows
     double tolerance;       // kTolerance, or another
     bool wants_uv = false;  // the mesh gets its texture coordinates
+    /// Where triangles of a large file may wait on a disk; null: they come in memory.
+    const Streaming* streaming = nullptr;
 };
 
 /// Returns the shape's triangles. Returns nothing if the shape is unknown, lacks data, or has data

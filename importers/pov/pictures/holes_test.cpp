@@ -52,9 +52,8 @@ std::optional<dvec2> uv_at(const Scene& scene, uint32_t mesh, const dvec3& at) {
             continue;
         if (shares.x < -1e-9 || shares.y < -1e-9 || shares.z < -1e-9)
             continue;
-        const std::vector<vec2>& uv = scene.uv_of(scene.meshes[mesh]);
-        return shares.x * dvec2(uv[3 * prim]) + shares.y * dvec2(uv[3 * prim + 1]) +
-               shares.z * dvec2(uv[3 * prim + 2]);
+        const std::array<vec2, 3> uv = scene.uv_of(scene.meshes[mesh]).of(prim);
+        return shares.x * dvec2(uv[0]) + shares.y * dvec2(uv[1]) + shares.z * dvec2(uv[2]);
     }
     return std::nullopt;
 }

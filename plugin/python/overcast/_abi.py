@@ -93,7 +93,8 @@ class ovc_plan(Sized):
                 ("pool_bytes", c.c_uint64), ("resident_pages", c.c_uint64),
                 ("host_bytes", c.c_uint64),
                 ("batch_rays", c.c_uint64), ("fits", c.c_uint32), ("reserved", c.c_uint32),
-                ("seconds", c.c_double)]
+                ("seconds", c.c_double), ("saved_bytes", c.c_uint64),
+                ("smallest_host_bytes", c.c_uint64)]
 
 
 class ovc_statistics(Sized):

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// CornerCache: neighbouring blocks lie in neighbouring sets, each of which has a lock.
-#include "plugin/leaf_store/corner_cache.h"
+// BlockCache: neighbouring blocks lie in neighbouring sets, each of which has a lock.
+#include "core/file/block_cache.h"
 
 #include <sys/mman.h>
 
@@ -11,7 +11,7 @@
 
 namespace ovc {
 
-CornerCache::CornerCache(uint64_t block_bytes, uint64_t capacity_bytes)
+BlockCache::BlockCache(uint64_t block_bytes, uint64_t capacity_bytes)
     : block_bytes_(block_bytes),
       sets_(std::max<size_t>(kMinSets, capacity_bytes / (kWays * block_bytes))) {
     void* const mapped = mmap(nullptr, sets_.size() * kWays * block_bytes, PROT_READ | PROT_WRITE,
@@ -21,12 +21,12 @@ CornerCache::CornerCache(uint64_t block_bytes, uint64_t capacity_bytes)
     memory_ = static_cast<std::byte*>(mapped);
 }
 
-CornerCache::~CornerCache() {
+BlockCache::~BlockCache() {
     munmap(memory_, sets_.size() * kWays * block_bytes_);
 }
 
-bool CornerCache::copy(uint64_t block, size_t offset, std::span<std::byte> to,
-                       FunctionRef<bool(std::span<std::byte>)> fill) {
+bool BlockCache::copy(uint64_t block, size_t offset, std::span<std::byte> to,
+                      FunctionRef<bool(std::span<std::byte>)> fill) {
     assert(block != kEmpty && offset + to.size() <= block_bytes_);
     const size_t number = block % sets_.size();
     Set& set = sets_[number];

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// CornerCache: bytes are those of their block, however many threads ask for however many blocks.
-#include "plugin/leaf_store/corner_cache.h"
-
-#include "kdtree/test_soups.h"
+// BlockCache: bytes are those of their block, however many threads ask for however many blocks.
+#include "core/file/block_cache.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
+#include <random>
 #include <thread>
 
 namespace ovc {
@@ -21,7 +21,7 @@ std::byte byte_of(uint64_t block, size_t place) {
 }
 
 /// Asks for some bytes of a block. Returns whether they came, and are right.
-bool ask(CornerCache& cache, uint64_t block, size_t offset, bool fails, std::atomic<int>& fills) {
+bool ask(BlockCache& cache, uint64_t block, size_t offset, bool fails, std::atomic<int>& fills) {
     std::array<std::byte, 9> found{};
     const bool here = cache.copy(block, offset, found, [&](std::span<std::byte> to) {
         ++fills;
@@ -37,8 +37,8 @@ bool ask(CornerCache& cache, uint64_t block, size_t offset, bool fails, std::ato
     return true;
 }
 
-TEST(CornerCache, ReadsABlockOnceWhileThereIsRoom) {
-    CornerCache cache(kBlockBytes, 1 << 16);
+TEST(BlockCache, ReadsABlockOnceWhileThereIsRoom) {
+    BlockCache cache(kBlockBytes, 1 << 16);
     std::atomic<int> fills{0};
     for (int round = 0; round < 3; ++round)
         for (uint64_t block = 0; block < 200; ++block)
@@ -48,27 +48,27 @@ TEST(CornerCache, ReadsABlockOnceWhileThereIsRoom) {
     EXPECT_EQ(cache.bytes(), 200 * kBlockBytes);
 }
 
-TEST(CornerCache, ABlockThatCouldNotBeReadIsNotHere) {
-    CornerCache cache(kBlockBytes, 1 << 16);
+TEST(BlockCache, ABlockThatCouldNotBeReadIsNotHere) {
+    BlockCache cache(kBlockBytes, 1 << 16);
     std::atomic<int> fills{0};
     EXPECT_FALSE(ask(cache, 3, 0, true, fills));
     EXPECT_TRUE(ask(cache, 3, 0, false, fills));
     EXPECT_EQ(fills, 2);
 }
 
-TEST(CornerCache, StaysWithinItsCapacityAndRightWhateverThreadsDo) {
-    const uint64_t capacity = CornerCache::min_bytes(kBlockBytes);
-    CornerCache cache(kBlockBytes, capacity);
+TEST(BlockCache, StaysWithinItsCapacityAndRightWhateverThreadsDo) {
+    const uint64_t capacity = BlockCache::min_bytes(kBlockBytes);
+    BlockCache cache(kBlockBytes, capacity);
     std::atomic<int> fills{0};
     std::vector<std::thread> threads;
     for (uint64_t seed = 0; seed < 6; ++seed)
         threads.emplace_back([&, seed] {
-            test::Random random(seed);
+            std::mt19937_64 random(seed);
             for (int i = 0; i < 20000; ++i) {
-                const uint64_t block = random.below(100);
-                const bool fails = random.below(10) == 0;
+                const uint64_t block = random() % 100;
+                const bool fails = random() % 10 == 0;
                 const int before = fills;
-                const bool right = ask(cache, block, random.below(55), fails, fills);
+                const bool right = ask(cache, block, random() % 55, fails, fills);
                 EXPECT_TRUE(right || (fails && fills > before));
             }
         });

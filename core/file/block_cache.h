@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// CornerCache: blocks of corners that were read lately, within a fixed number of bytes.
+// BlockCache: blocks of a file that were read lately, within a fixed number of bytes.
 #pragma once
 
 #include "core/function_ref.h"
@@ -16,12 +16,12 @@ namespace ovc {
 
 /// A block lies in one of a few places, which its number tells. Memory is taken as it is used, and
 /// given back when the cache is destroyed.
-class CornerCache {
+class BlockCache {
 public:
     /// capacity_bytes: the max of all blocks; less than a few blocks are taken for a few.
-    CornerCache(uint64_t block_bytes, uint64_t capacity_bytes);
-    ~CornerCache();
-    CornerCache(const CornerCache&) = delete;
+    BlockCache(uint64_t block_bytes, uint64_t capacity_bytes);
+    ~BlockCache();
+    BlockCache(const BlockCache&) = delete;
 
     /// Returns the smallest capacity that works.
     static uint64_t min_bytes(uint64_t block_bytes) { return kWays * kMinSets * block_bytes; }
