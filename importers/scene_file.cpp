@@ -8,6 +8,7 @@
 #include "importers/readers.h"
 #include "importers/scene_fields.h"
 #include "importers/sound_meshes.h"
+#include "importers/sound_textures.h"
 
 #include <fmt/format.h>
 
@@ -25,7 +26,7 @@ namespace {
 constexpr std::string_view kKind = "ovc scene";
 /// Raise it with every change of scene_fields.h, and when an importer makes another scene of the
 /// same file.
-constexpr uint32_t kVersion = 7;
+constexpr uint32_t kVersion = 8;
 
 /// Where a mesh's corners and normals lie in the other parts.
 struct MeshExtent {
@@ -133,6 +134,8 @@ bool is_sound(const Scene& scene) {
     for (const Material& material : scene.materials)
         if (material.optics && material.optics->boundary > Optics::Boundary::Thin)
             return false;
+    if (!has_sound_textures(scene))
+        return false;
     for (const Cutout& cutout : scene.cutouts)
         if (cutout.opacity.empty() || cutout.beyond > Cutout::Beyond::Hole ||
             cutout.opacity.size() != uint64_t(cutout.width) * cutout.height)

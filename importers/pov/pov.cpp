@@ -8,6 +8,7 @@
 #include "importers/pov/parse/parse_sky.h"
 #include "importers/pov/parse/parse_value.h"
 #include "importers/pov/parse/texture.h"
+#include "importers/pov/texture_table.h"
 #include "importers/pov/words/block.h"
 #include "importers/pov/words/files.h"
 #include "importers/readers.h"
@@ -65,8 +66,6 @@ public:
         reader_.open(std::move(file));
         while (reader_.peek().kind != TokenKind::End)
             parse_statement(scene);
-        if (sky_)
-            scene.background = background_of(reader_, *sky_, scene.background.horizon, sky_at_);
         scene.max_depth = trace_level_ - 1; // POV-Ray counts the camera's rays too
         // Before 3.7 scenes made colors for screens, and povray still writes them as they are.
         scene.gamma = gamma_given_ || reader_.has_linear_colors() ? reader_.gamma : kSrgbGamma;
@@ -78,6 +77,8 @@ public:
         look_.max_triangles = options_.max_triangles;
         look_.tolerance = options_.tolerance;
         look_.tell = [&](const Note& note) { reader_.warn(note.kind, note.place, note.sentence); };
+        if (sky_)
+            add_sky(*sky_, look_, scene);
         flatten(objects_, look_, scene);
         scene.moves = reader_.moves;
         return scene;
@@ -95,7 +96,7 @@ private:
         else if (reader_.take("global_settings"))
             parse_settings();
         else if (reader_.take("sky_sphere"))
-            parse_sky(token.place);
+            sky_ = parse_sky_sphere(reader_);
         else if (token.is("fog") || token.is("media") || token.is("rainbow") ||
                  token.is("photons") || token.is("radiosity")) {
             reader_.next();
@@ -122,11 +123,6 @@ private:
         reader_.expect('}', "background");
     }
 
-    void parse_sky(const Place& at) {
-        sky_ = parse_sky_sphere(reader_);
-        sky_at_ = at;
-    }
-
     void parse_settings() {
         reader_.expect('{', "global_settings");
         while (!reader_.take('}')) {
@@ -136,6 +132,10 @@ private:
                 gamma_given_ = true;
             } else if (reader_.take("max_trace_level"))
                 trace_level_ = uint32_t(parse_int(reader_, 1, 256, "max_trace_level"));
+            else if (reader_.take("noise_generator"))
+                reader_.noise = parse_int(reader_, 1, 3, "noise_generator") == 1
+                                    ? NoiseKind::Original
+                                    : NoiseKind::Corrected;
             else if (reader_.take("ambient_light"))
                 look_.ambient_light = parse_color(reader_).rgb;
             else if (const Token token = reader_.next();
@@ -163,7 +163,6 @@ private:
     Reader reader_;
     Look look_;
     std::optional<SkySphere> sky_;
-    Place sky_at_; // of sky_
     bool gamma_given_ = false;
     uint32_t trace_level_ = 5;
     std::vector<ObjectPtr> objects_;

@@ -343,15 +343,14 @@ TEST(PovErrors, WhatIsDeclaredAndNotSeenMayBeUnsupported) {
 TEST(PovWarnings, ComeOncePerKind) {
     std::vector<std::string> messages;
     const auto scene =
-        parse_pov("sphere { 0, 1 pigment { bozo } }\nsphere { 0, 1 pigment { wood } }\n"
+        parse_pov("sphere { 0, 1 pigment { mandel 9 } }\nsphere { 0, 1 pigment { mandel 8 } }\n"
                   "sphere { 0, 1 normal { bumps 1 } }",
                   "x.pov", gather(messages));
     EXPECT_TRUE(scene);
     ASSERT_EQ(messages.size(), 2u);
-    EXPECT_EQ(messages[0],
-              "x.pov:1:25: patterns such as 'bozo' are drawn by their average "
-              "color\n    sphere { 0, 1 pigment { bozo } }\n                            "
-              "^");
+    EXPECT_EQ(messages[0], "x.pov:1:25: the pattern 'mandel' is drawn by its average color\n"
+                           "    sphere { 0, 1 pigment { mandel 9 } }\n"
+                           "                            ^");
 }
 
 TEST(PovScene, ReadsLightsCameraAndSettings) {
@@ -395,11 +394,11 @@ Material material_of_box(const std::string& look) {
               "#declare N = normal { bumps 1 }; #declare T = texture { pigment { rgb z } finish { "
               "ambient 0.7 } }\nbox { -1, 1 " +
               look + " }");
-    if (!scene || scene->materials.size() != 1) {
-        ADD_FAILURE() << look << ": " << (scene ? "no single material" : scene.error().message);
+    if (!scene || scene->meshes.size() != 1) {
+        ADD_FAILURE() << look << ": " << (scene ? "no single mesh" : scene.error().message);
         return {};
     }
-    return scene->materials[0];
+    return scene->materials[scene->meshes[0].material];
 }
 
 TEST(PovScene, TexturesTakePigmentsAndFinishesByName) {

@@ -136,11 +136,16 @@ public:
     bool version_given = false; // without a #version povray takes the scene for an older one
     /// Returns whether colors are linear light instead of code values for a screen.
     bool has_linear_colors() const { return version_given && version >= 3.7; }
+    /// Returns the noise of patterns that do not name one.
+    NoiseKind noise_kind() const {
+        return noise.value_or(version < 3.5 ? NoiseKind::Original : NoiseKind::Corrected);
+    }
     double gamma = 1; // assumed_gamma, to which srgb colors are converted
     ImageSize picture{640, 480};
     Moment moment;
-    bool moves = false; // the scene has asked for the moment
-    Texture defaults;   // of #default
+    bool moves = false;             // the scene has asked for the moment
+    Texture defaults;               // of #default
+    std::optional<NoiseKind> noise; // noise_generator of global_settings
     /// The objects that the scene asked about with trace().
     std::map<ObjectPtr, std::unique_ptr<const TraceTarget>> targets;
     std::map<std::string, std::unique_ptr<Font>> fonts; // by name; shapes point to their letters
