@@ -7,7 +7,7 @@
 #include "core/file/mapped_file.h"
 #include "core/file/scene_on_disk.h"
 #include "core/soup.h"
-#include "core/texture/texture.h"
+#include "core/texture/bump.h"
 
 #include <algorithm>
 #include <array>
@@ -88,6 +88,7 @@ struct Material {
     /// `color`, and its through() x `transmission` that of transmission x filter. `transmission` is
     /// 0 where no color of the texture lets light through.
     std::optional<PlacedTexture> texture;
+    std::optional<Bump> bump; // tilts the normals
     /// The material below, an index into Scene::materials. It is seen in the light that this one
     /// lets through. Its own layers follow; kNone: there is none.
     uint32_t under = kNone;
@@ -237,6 +238,14 @@ struct Instancing {
     uint64_t instances = 0;
 };
 
+/// A kind of thing that is not drawn as its file's author meant, and how often it comes.
+struct Omission {
+    std::string sentence;
+    uint64_t count = 0;
+
+    bool operator==(const Omission&) const = default;
+};
+
 struct Scene {
     std::string name;
     Soup soup;
@@ -254,6 +263,7 @@ struct Scene {
     float exposure = 1; // lights, background and emission were multiplied by it to fit a picture
     /// POV-Ray's assumed_gamma: a rendered value ^ gamma is linear light. Or kSrgbGamma.
     double gamma = 1;
+    std::vector<Omission> omissions;      // as far as the importer counts them
     std::optional<Instancing> instancing; // none: the file has no instances
     std::vector<MappedFile> files;        // hold the bytes of borrowing chunks and of `saved`
     Bytes saved; // levels that the plugin saved (ovc_scene_config.saved), or empty

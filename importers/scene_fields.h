@@ -14,6 +14,14 @@ namespace ovc {
 template <class A, class T>
 concept Some = std::same_as<std::remove_const_t<A>, T>;
 
+void each_field(auto& io, Some<PlacedTexture> auto& p) {
+    io(p.texture, p.to_texture);
+}
+
+void each_field(auto& io, Some<Bump> auto& b) {
+    io(b.kind, b.amount, b.accuracy, b.pattern);
+}
+
 void each_field(auto& io, Some<Finish> auto& f) {
     io(f.ambient, f.diffuse, f.brilliance, f.phong, f.phong_size, f.specular, f.roughness,
        f.metallic, f.reflection, f.grazing_reflection, f.reflection_falloff, f.fresnel,
@@ -45,17 +53,13 @@ void each_field(auto& io, Some<Texture> auto& t) {
     io(t.pattern, t.stops);
 }
 
-void each_field(auto& io, Some<PlacedTexture> auto& p) {
-    io(p.texture, p.to_texture);
-}
-
 void each_field(auto& io, Some<Optics> auto& o) {
     io(o.diffuse, o.boundary, o.reflection, o.through, o.ior, o.width, o.emission, o.two_sided);
 }
 
 void each_field(auto& io, Some<Material> auto& m) {
     io(m.name, m.color, m.mirror, m.transmission, m.filter, m.ior, m.finish, m.optics, m.texture,
-       m.under, m.mix);
+       m.bump, m.under, m.mix);
 }
 
 void each_field(auto& io, Some<Cutout> auto& c) {
@@ -88,6 +92,10 @@ void each_field(auto& io, Some<Background> auto& b) {
     io(b.horizon, b.zenith, b.layers);
 }
 
+void each_field(auto& io, Some<Omission> auto& o) {
+    io(o.sentence, o.count);
+}
+
 void each_field(auto& io, Some<Instancing> auto& i) {
     io(i.unique_triangles, i.instances);
 }
@@ -102,7 +110,7 @@ void each_field(auto& io, Some<MeshInfo> auto& m) {
 /// Passes all fields except meshes, soup, and what the file's other parts hold.
 void each_field(auto& io, Some<Scene> auto& s) {
     io(s.name, s.materials, s.textures, s.cutouts, s.lights, s.may_add_light, s.camera, s.size,
-       s.max_depth, s.background, s.exposure, s.gamma, s.instancing);
+       s.max_depth, s.background, s.exposure, s.gamma, s.omissions, s.instancing);
 }
 
 void each_field(auto& io, Some<FileStamp> auto& f) {

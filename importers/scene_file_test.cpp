@@ -154,7 +154,8 @@ TEST(SceneFile, EveryFieldOfAStructIsNamed) {
     EXPECT_EQ(size(TextureStop{}), sizeof(TextureStop));
     EXPECT_EQ(size(PlacedTexture{}), sizeof(PlacedTexture) - 4);
     EXPECT_EQ(size(Background{}), 24 + 8u);
-    EXPECT_EQ(size(Material{}), 8 + 12 + 4 + 4 + 12 + 8 + 1 + 1 + 1 + 4 + 1u);
+    EXPECT_EQ(size(Material{}), 8 + 12 + 4 + 4 + 12 + 8 + 1 + 1 + 1 + 1 + 4 + 1u);
+    EXPECT_EQ(size(Bump{}), sizeof(Bump) - 4);
     EXPECT_EQ(size(SpotCone{}), sizeof(SpotCone));
     EXPECT_EQ(size(Optics{}), 3 * 12 + 1 + 8 + 4 + 12 + 1u);
     EXPECT_EQ(size(Light{}), 24 + 12 + 1 + 24 + 1 + 1 + 1 + 8 + 8 + 1u);
@@ -164,7 +165,7 @@ TEST(SceneFile, EveryFieldOfAStructIsNamed) {
     EXPECT_EQ(size(MeshInfo{}), 8 + 4 + 4 + 72 + 3 * 4 + 8 + 8u);
     EXPECT_EQ(sizeof(Finish), 80u) << "a field more: name it in scene_fields.h, and here";
     EXPECT_EQ(sizeof(Optics), 72u) << "a field more: name it in scene_fields.h, and here";
-    EXPECT_EQ(sizeof(Material), 472u) << "a field more: name it in scene_fields.h, and here";
+    EXPECT_EQ(sizeof(Material), 608u) << "a field more: name it in scene_fields.h, and here";
     EXPECT_EQ(sizeof(Light), 128u) << "a field more: name it in scene_fields.h, and here";
     EXPECT_EQ(sizeof(ImageWindow), 96u) << "a field more: name it in scene_fields.h, and here";
     EXPECT_EQ(sizeof(Camera), 184u) << "a field more: name it in scene_fields.h, and here";

@@ -55,6 +55,10 @@ inline bool has_sound_textures(const Scene& scene) {
         const Material& material = scene.materials[m];
         if (material.texture && !is_color(*material.texture))
             return false;
+        if (material.bump &&
+            (material.bump->kind > Bump::Kind::Wrinkles || !(material.bump->accuracy > 0) ||
+             material.bump->pattern.texture >= scene.textures.size()))
+            return false;
         if (material.mix) {
             if (material.mix->texture >= mixes.size())
                 return false;

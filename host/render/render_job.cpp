@@ -274,7 +274,10 @@ private:
     const InterruptGuard& interrupt_;
 };
 
-static void report(const RenderJob& job, const RenderStats& stats) {
+static void report(const RenderJob& job, const RenderStats& stats,
+                   const std::vector<Omission>& omissions) {
+    if (const std::string text = omissions_text(omissions); !job.quiet && !text.empty())
+        print_message(text);
     if (!job.quiet && stats.frames_there > 0)
         fmt::print("{} frames were there already\n", stats.frames_there);
     if (!job.quiet && !stats.frames.empty() && (stats.report.complete || !job.shots.empty()))
@@ -480,7 +483,7 @@ Result<int> render(const RenderJob& job) {
     if (!job.stats.empty())
         if (done = save_text(stats_json(stats), job.stats); !done)
             return done.error();
-    report(job, stats);
+    report(job, stats, scene->omissions);
     return stats.report.complete ? kExitOk : kExitInterrupted;
 }
 

@@ -53,6 +53,7 @@ public:
         append(all_.soup.chunks, scene.soup.chunks);
         append(all_.lights, scene.lights);
         append(all_.files, scene.files);
+        append(all_.omissions, scene.omissions);
         take_background(scene, next.name);
         all_.name += " + " + scene.name;
     }
@@ -72,6 +73,8 @@ private:
             material.under += material.under == kNone ? 0 : materials;
             if (material.mix)
                 mixes[material.mix->texture] = true;
+            if (material.bump)
+                material.bump->pattern.texture += textures;
             for (std::optional<PlacedTexture>* placed : {&material.texture, &material.mix})
                 if (*placed)
                     (*placed)->texture += textures;

@@ -7,7 +7,7 @@
 #include "core/texture/pattern.h"
 #include "host/shade/finish.h"
 #include "host/shade/refract.h"
-#include "host/shade/surface_material.h"
+#include "host/shade/surface/surface_material.h"
 
 #include <algorithm>
 #include <cassert>

@@ -24,8 +24,8 @@ static size_t color_key(const ovc::Material& m) {
 
 uint32_t MaterialTable::number(const Texture& texture, const Color& color, const dmat4& placed,
                                const Interior* interior) {
-    for (const Notes* notes :
-         {&texture.notes, &texture.pigment.notes, &texture.surface.notes, &texture.mix.notes})
+    for (const Notes* notes : {&texture.notes, &texture.pigment.notes, &texture.surface.notes,
+                               &texture.mix.notes, &texture.normal.pattern.notes})
         tell_all(*notes, look_);
     if (interior)
         tell_all(interior->notes, look_);
@@ -87,6 +87,10 @@ ovc::Material MaterialTable::made(const Texture& texture, const Color& color, co
     const double ior = texture.surface.ior.value_or(interior ? interior->ior : 1);
     material.ior = is_usable_ior(ior) ? ior : 1;
     material.finish = finish;
+    if (const Normal& normal = texture.normal; normal.pattern.pattern)
+        material.bump =
+            Bump{normal.kind, normal.amount, normal.accuracy,
+                 textures_.of_pigments(*normal.pattern.pattern, placed * normal.pattern.placed)};
     if (texture.mix.pattern)
         mix(texture, placed, interior, material);
     if (texture.under && material.transmission > 0)

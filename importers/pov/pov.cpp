@@ -31,7 +31,9 @@ void parse_defaults(Reader& reader) {
             reader.defaults.pigment = parse_pigment(reader, reader.defaults.pigment);
         else if (reader.take("finish"))
             reader.defaults.surface = parse_finish(reader, reader.defaults.surface);
-        else if (reader.take("normal") || reader.take("camera") || reader.take("radiosity"))
+        else if (reader.take("normal"))
+            reader.defaults.normal = parse_normal(reader, reader.defaults.normal);
+        else if (reader.take("camera") || reader.take("radiosity"))
             skip_braces(reader, "#default");
         else
             reader.fail_here("a texture, pigment or finish");
@@ -57,6 +59,7 @@ public:
         reader_.version_given = options.pov_version.has_value();
         reader_.picture = options.size.value_or(reader_.picture);
         reader_.moment = options.moment;
+        reader_.strict = options.strict;
     }
 
     Scene parse(std::unique_ptr<SourceFile> file) {
@@ -76,11 +79,12 @@ public:
         look_.defaults = reader_.defaults;
         look_.max_triangles = options_.max_triangles;
         look_.tolerance = options_.tolerance;
-        look_.tell = [&](const Note& note) { reader_.warn(note.kind, note.place, note.sentence); };
+        look_.tell = [&](const Note& note) { reader_.omit(note.kind, note.place, note.sentence); };
         if (sky_)
             add_sky(*sky_, look_, scene);
         flatten(objects_, look_, scene);
         scene.moves = reader_.moves;
+        scene.omissions = reader_.omissions();
         return scene;
     }
 
@@ -100,7 +104,7 @@ private:
         else if (token.is("fog") || token.is("media") || token.is("rainbow") ||
                  token.is("photons") || token.is("radiosity")) {
             reader_.next();
-            reader_.warn(token.name->text, token.place, token.name->text + " is left out");
+            reader_.omit(token.name->text, token.place, token.name->text + " is left out");
             skip_braces(reader_, token.name->text);
         } else if (auto object = take_named_if<ObjectPtr>(reader_))
             objects_.push_back(std::move(*object));
@@ -141,7 +145,7 @@ private:
             else if (const Token token = reader_.next();
                      token.kind == TokenKind::Name && token.name->is_keyword) {
                 if (token.is("radiosity") || token.is("photons") || token.is("hf_gray_16"))
-                    reader_.warn(token.name->text, token.place, token.name->text + " is left out");
+                    reader_.omit(token.name->text, token.place, token.name->text + " is left out");
                 skip_arguments(reader_);
             } else
                 reader_.fail(token.place, fmt::format("found {}, expected a part of "

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "importers/pov/texture_table.h"
 
+#include "core/texture/pattern.h"
 #include "importers/pov/material_table.h"
 
 #include <algorithm>
@@ -80,6 +81,17 @@ PlacedTexture TextureTable::of_materials(const PatternMap& map, std::span<const 
     for (size_t i = 0; i < map.stops.size(); ++i)
         texture.stops.push_back({map.stops[i].at, {}, materials[i]});
     return placed_texture(add(std::move(texture), /* is_mix= */ true), placed);
+}
+
+ColorFormula color_function(const Pigment& pigment) {
+    if (!pigment.pattern)
+        return [color = pigment.color](const dvec3&) { return color; };
+    Scene scratch;
+    const PlacedTexture placed =
+        TextureTable(scratch).of_pigments(*pigment.pattern, pigment.placed);
+    return [placed, textures = std::move(scratch.textures)](const dvec3& at) {
+        return color_at(textures, placed.texture, placed.at(at));
+    };
 }
 
 bool lets_light_through(const Pigment& pigment) {

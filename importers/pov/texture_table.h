@@ -32,6 +32,9 @@ private:
     std::unordered_multimap<size_t, uint32_t> by_key_[2]; // of colors, of materials
 };
 
+/// Returns the pigment's color as a function of a point of its parent's space.
+ColorFormula color_function(const Pigment& pigment);
+
 /// Returns whether a color of the pigment lets light through.
 bool lets_light_through(const Pigment& pigment);
 

@@ -134,6 +134,7 @@ Scene scene_with_everything() {
                       {marble, {{0, {}, 0}, {1, {}, 0}}},
                       {marble, {{0, {}, 0}, {1, {}, 1}}}};
     scene.materials[1].texture = PlacedTexture{1};
+    scene.materials[1].bump = Bump{.kind = Bump::Kind::Dents};
     scene.materials.push_back({.name = "mixed", .under = 1, .mix = PlacedTexture{2}});
     scene.background.layers = {PlacedTexture{0}};
     const std::vector<vec3> corners = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0},

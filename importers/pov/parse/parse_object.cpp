@@ -151,7 +151,6 @@ Texture& own_texture(Reader& reader, Object& object) {
 }
 
 bool parse_look(Reader& reader, Object& object) {
-    const Token token = reader.peek();
     if (reader.take("texture"))
         add_texture(object, parse_texture(reader));
     else if (reader.take("pigment")) {
@@ -161,8 +160,8 @@ bool parse_look(Reader& reader, Object& object) {
         Texture& texture = own_texture(reader, object);
         texture.surface = parse_finish(reader, texture.surface);
     } else if (reader.take("normal")) {
-        own_texture(reader, object).notes.push_back(normal_note(reader, token));
-        skip_braces(reader, "normal");
+        Texture& texture = own_texture(reader, object);
+        texture.normal = parse_normal(reader, texture.normal);
     } else if (reader.take("material")) {
         const Material material = parse_material(reader);
         if (material.texture)

@@ -20,7 +20,7 @@ SkySphere parse_sky_sphere(Reader& reader) {
                 pigment.placed = *m * pigment.placed;
         } else if (const Token token = reader.peek(); reader.take("emission")) {
             parse_color(reader);
-            reader.warn("sky emission", token.place, "emission of a sky_sphere is left out");
+            reader.omit("sky emission", token.place, "emission of a sky_sphere is left out");
         } else
             reader.fail_here("a pigment of sky_sphere");
     }

@@ -111,7 +111,7 @@ const std::unordered_map<std::string_view, ParseValue> kKinds = {
     {"colour_map", [](Reader& r) -> Value { return parse_map(r, MapOf::Pigments); }},
     {"pigment_map", [](Reader& r) -> Value { return parse_map(r, MapOf::Pigments); }},
     {"texture_map", [](Reader& r) -> Value { return parse_map(r, MapOf::Textures); }},
-    {"normal", parse_opaque},
+    {"normal", [](Reader& r) -> Value { return parse_normal(r, {}); }},
     {"normal_map", parse_opaque},
     {"slope_map", parse_opaque},
     {"density", parse_opaque},
@@ -206,10 +206,10 @@ Value parse_value(Reader& reader) {
 
 std::string kind_of(const Value& value) {
     static constexpr const char* kKindNames[] = {
-        "nothing",   "a number",    "a text",      "an object",  "a texture",
-        "a pigment", "a finish",    "an interior", "a material", "a color map",
-        "a sky",     "a transform", "an array",    "a macro",    "a function",
-        "a spline",  "a camera",    "a file",      "a block"};
+        "nothing",     "a number", "a text",      "an object",   "a texture",
+        "a pigment",   "a normal", "a finish",    "an interior", "a material",
+        "a color map", "a sky",    "a transform", "an array",    "a macro",
+        "a function",  "a spline", "a camera",    "a file",      "a block"};
     static_assert(std::size(kKindNames) == std::variant_size_v<Value::variant>);
     return kKindNames[value.index()];
 }

@@ -250,6 +250,11 @@ void PatternParts::restart() {
     stops_ = pigment_.pattern->stops;
 }
 
+bool PatternParts::is_pattern(const Token& token) {
+    return token.kind == TokenKind::Name &&
+           (kPatterns.contains(token.name->text) || kLists.contains(token.name->text));
+}
+
 void PatternParts::forget() {
     chosen_ = refused_ = false;
     changed_ = true;
@@ -271,9 +276,11 @@ void PatternParts::choose(Kind kind, Wave wave) {
 void PatternParts::refuse(const Token& token) {
     chosen_ = refused_ = changed_ = true;
     pigment_.holes.reset();
-    pigment_.notes = {reader_.note("pattern " + token.name->text, token.place,
-                                   fmt::format("the pattern {} is drawn by its average color",
-                                               ovc::quoted(token.name->text)))};
+    const bool of_normal = of_ == MapOf::Normals;
+    pigment_.notes = {reader_.note(
+        (of_normal ? "normal " : "pattern ") + token.name->text, token.place,
+        fmt::format("the pattern {} {}", ovc::quoted(token.name->text),
+                    of_normal ? "of a normal is left out" : "is drawn by its average color"))};
 }
 
 void PatternParts::add_step(TextureStep step) {
@@ -346,7 +353,14 @@ bool PatternParts::take_list(const Token& token) {
     pattern_.steps.clear();
     if (found->second == Kind::Brick)
         pattern_.parameters = {8, 3, 4.5, 0.5};
-    parse_list();
+    if (of_ != MapOf::Normals)
+        parse_list();
+    else if (reader_.peek().is("normal")) {
+        refuse(token);
+        while (reader_.take("normal") || reader_.take(','))
+            if (reader_.peek().is('{'))
+                skip_braces(reader_, "normal");
+    }
     return true;
 }
 

@@ -6,7 +6,8 @@
 
 namespace ovc::pov {
 
-enum class MapOf { Pigments, Textures };
+/// What a pattern is for. Normals have no maps or lists here.
+enum class MapOf { Pigments, Textures, Normals };
 
 /// Reads a map of colors, pigments or textures from its { on.
 ColorMap parse_map(Reader& reader, MapOf of);
@@ -24,6 +25,8 @@ public:
     void restart();
     /// Puts a color or a picture in the pattern's place.
     void forget();
+    /// Returns whether the token names a pattern that is evaluated.
+    static bool is_pattern(const Token& token);
     /// Gives the pattern to the pigment, which gets its average color as well.
     void finish();
     /// The entries of the map or list.

@@ -175,6 +175,25 @@ TEST(PovTexture, MixesTextures) {
     EXPECT_EQ(checkered.texture->at({6, 12, -6}), dvec3(1, 2, -1)) << "both scales";
 }
 
+TEST(PovNormal, TiltsNormals) {
+    const Scene scene = textured_box("pigment { rgb 1 } normal { granite 0.3 accuracy 0.1 scale 2 "
+                                     "turbulence 0.2 } scale 3");
+    const Material& material = box_material(scene);
+    ASSERT_TRUE(material.bump);
+    EXPECT_EQ(material.bump->kind, Bump::Kind::Height);
+    EXPECT_EQ(material.bump->amount, 0.3);
+    EXPECT_EQ(material.bump->accuracy, 0.1);
+    EXPECT_EQ(material.bump->pattern.at({6, 12, -6}), dvec3(1, 2, -1)) << "both scales";
+    const Pattern& pattern = scene.textures.at(material.bump->pattern.texture).pattern;
+    EXPECT_EQ(pattern.kind, Pattern::Kind::Granite);
+    EXPECT_EQ(pattern.turbulence, dvec3(0.2));
+    const Scene named = textured_scene("#declare N = normal { bumps 0.4 }\n"
+                                       "box { -1, 1 texture { normal { N bump_size 0.7 } } }");
+    EXPECT_EQ(box_material(named).bump->kind, Bump::Kind::Noise);
+    EXPECT_EQ(box_material(named).bump->amount, 0.7);
+    EXPECT_TRUE(scene.omissions.empty());
+}
+
 TEST(PovSky, HasPatterns) {
     const Scene scene = textured_scene("sky_sphere { pigment { gradient y } "
                                        "pigment { rgbt <1, 0, 0, 0.5> } scale 2 }");

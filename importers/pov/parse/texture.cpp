@@ -97,10 +97,6 @@ bool parse_finish_part(Reader& reader, Surface& surface) {
 
 } // namespace
 
-const Note* normal_note(Reader& reader, const Token& word) {
-    return reader.note("normal", word.place, "normal patterns are left out");
-}
-
 const Note* left_out(Reader& reader, std::string_view of, const Token& word) {
     assert(word.name);
     const std::string what = fmt::format("{} of {}", word.name->text, of);
@@ -282,6 +278,7 @@ static void take_mix(Reader& reader, PatternParts& mix, Texture& texture) {
     const Texture& first = *stops.front().texture;
     texture.pigment = first.pigment;
     texture.surface = first.surface;
+    texture.normal = first.normal;
     if (!texture.mix.pattern) {
         texture.pigment = {};
         texture.pigment.color = texture.mix.color;
@@ -300,8 +297,8 @@ Texture parse_texture_parts(Reader& reader, Texture texture, char end) {
             texture.pigment = *named_pigment;
         else if (const auto named_finish = take_named_if<Surface>(reader))
             texture.surface = *named_finish;
-        else if (take_named_if<Opaque>(reader))
-            texture.notes.push_back(normal_note(reader, token));
+        else if (const auto named_normal = take_named_if<Normal>(reader))
+            texture.normal = *named_normal;
         else if (const auto m = take_transform(reader))
             place(texture, *m);
         else if (reader.take("pigment"))
@@ -312,10 +309,9 @@ Texture parse_texture_parts(Reader& reader, Texture texture, char end) {
             texture.pigment.uv_mapping = parse_flag(reader);
         else if (reader.take("tiles"))
             texture = parse_tiles(reader);
-        else if (reader.take("normal")) {
-            texture.notes.push_back(normal_note(reader, token));
-            skip_braces(reader, "normal");
-        } else if (mix.take()) {
+        else if (reader.take("normal"))
+            texture.normal = parse_normal(reader, texture.normal);
+        else if (mix.take()) {
         } else if (is_word(token)) {
             reader.next();
             skip_arguments(reader);
@@ -336,6 +332,7 @@ Texture parse_texture(Reader& reader) {
 void place(Texture& texture, const dmat4& by) {
     texture.pigment.placed = by * texture.pigment.placed;
     texture.mix.placed = by * texture.mix.placed;
+    texture.normal.pattern.placed = by * texture.normal.pattern.placed;
     if (texture.under) {
         Texture under = *texture.under;
         place(under, by);

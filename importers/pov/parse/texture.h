@@ -10,6 +10,7 @@ namespace ovc::pov {
 /// that the block names, and the block's parts change it.
 Texture parse_texture(Reader& reader);
 Pigment parse_pigment(Reader& reader, const Pigment& base);
+Normal parse_normal(Reader& reader, const Normal& base);
 Surface parse_finish(Reader& reader, const Surface& base);
 Interior parse_interior(Reader& reader, const Interior& base);
 Material parse_material(Reader& reader);
@@ -22,7 +23,6 @@ Texture layered(const Texture& upper, const Texture& lower);
 /// Moves the texture with all its layers.
 void place(Texture& texture, const dmat4& by);
 
-const Note* normal_note(Reader& reader, const Token& word);
 /// Returns the note "WORD of a finish is left out", where `of` is "a finish".
 const Note* left_out(Reader& reader, std::string_view of, const Token& word);
 

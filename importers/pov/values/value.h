@@ -85,6 +85,14 @@ struct Surface {
     Notes notes;
 };
 
+/// A normal { }, whose pattern tilts normals. Without a pattern it tilts none.
+struct Normal {
+    Pigment pattern; // its colors do not matter
+    Bump::Kind kind = Bump::Kind::Height;
+    double amount = 0.5;
+    double accuracy = 0.02;
+};
+
 struct Texture;
 /// Copies of a texture share the layers below it, which do not change any more.
 using TexturePtr = std::shared_ptr<const Texture>;
@@ -92,6 +100,7 @@ using TexturePtr = std::shared_ptr<const Texture>;
 /// A texture, with the layer below it where it lies on one.
 struct Texture {
     Pigment pigment;
+    Normal normal;
     Surface surface;
     /// Its pattern, unless null, mixes the textures of its stops; pigment and surface are then
     /// those of the first of them.
@@ -134,7 +143,7 @@ struct SkySphere {
     std::vector<Pigment> pigments;
 };
 
-/// A declared value that Overcast does not use: a media, a fog, a normal.
+/// A declared value that Overcast does not use: a media, a fog.
 struct Opaque {
     std::string kind;
 };
@@ -185,10 +194,14 @@ struct Spline {
 /// does not compute. Arguments that are missing count as 0.
 using Formula = SharedFunction<double(std::span<const double>)>;
 
-/// Exactly one of formula, transform, spline and refused is set.
+/// The color of a pigment at a point.
+using ColorFormula = SharedFunction<Color(const dvec3&)>;
+
+/// Exactly one of formula, color, transform, spline and refused is set.
 struct Function {
     size_t parameters = 3;
     Formula formula;
+    ColorFormula color;
     std::optional<dmat4> transform;
     std::optional<Spline> spline;
     uint32_t depth = 1;  // of nested closures
@@ -198,7 +211,7 @@ struct Function {
 
 /// The value of a variable or of an array's item, which owns it. Macros belong to the reader.
 struct Value : std::variant<std::monostate, Number, std::string, ObjectPtr, Texture, Pigment,
-                            Surface, Interior, Material, ColorMap, SkySphere, dmat4, Array,
+                            Normal, Surface, Interior, Material, ColorMap, SkySphere, dmat4, Array,
                             const Macro*, Function, Spline, CameraValue, DataFile, Opaque> {
     using variant::variant;
     using variant::operator=;

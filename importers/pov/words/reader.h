@@ -117,6 +117,11 @@ public:
     const Note* note(const std::string& kind, const Place& at, const std::string& sentence);
     /// Logs a warning, once for each `kind`.
     void warn(const std::string& kind, const Place& at, const std::string& sentence);
+    /// Warns of a thing that is not drawn as its author meant, and counts it. Throws ParseError
+    /// instead where the reader is strict.
+    void omit(const std::string& kind, const Place& at, const std::string& sentence);
+    std::vector<Omission> omissions() const;
+    bool strict = false;
 
     /// Returns the innermost variable of this name, or null. The scope of the variable owns it.
     Slot* find(const Name* name) const;
@@ -262,6 +267,7 @@ private:
     std::set<Note> notes_;
     std::vector<Token> back_;
     std::set<std::string> warned_;
+    std::map<std::string, Omission> omissions_;  // by kind
     std::map<std::string, std::string> written_; // files of #fopen, by name
     uint64_t written_bytes_ = 0;
     uint64_t available_;     // bytes of memory when reading began

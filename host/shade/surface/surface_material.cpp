@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/shade/surface_material.h"
+#include "host/shade/surface/surface_material.h"
 
 #include "core/texture/pattern.h"
 
@@ -11,6 +11,8 @@ static constexpr float kMinCoat = 1 / 4096.0f;
 static void take_color(const Scene& scene, const Material& material, const dvec3& at,
                        SurfacePoint& surface) {
     surface.material = &material;
+    if (material.bump)
+        surface.normal = bumped(scene.textures, *material.bump, at, surface.normal);
     surface.color = material.color;
     if (material.texture) {
         const TransparentColor color =
@@ -69,11 +71,14 @@ void take_material(const Scene& scene, uint32_t material, const dvec3& at, Surfa
         return;
     }
     const Material& own = scene.materials[material];
-    take_color(scene, own, at, surface);
-    if (own.under == kNone && !own.mix)
+    if (own.under == kNone && !own.mix) {
+        take_color(scene, own, at, surface);
         return;
+    }
     std::vector<Coat> coats;
-    surface.through = add_coats(scene, material, at, vec3(1), surface, coats);
+    const SurfacePoint bare = surface;
+    take_color(scene, own, at, surface);
+    surface.through = add_coats(scene, material, at, vec3(1), bare, coats);
     surface.color = vec3(0);
     for (const Coat& coat : coats)
         surface.color += coat.weight * coat.surface.opacity * coat.surface.color;
