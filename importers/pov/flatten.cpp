@@ -60,6 +60,9 @@ void add_light(const LightSource& source, const dmat4& placed, Scene& scene) {
             const dvec3 at = source.light.position + share(i, columns) * source.sides[0] +
                              share(j, rows) * source.sides[1];
             light.position = dvec3(placed * dvec4(at, 1));
+            const dvec3 aim = dvec3(placed * dvec4(source.point_at, 1)) - light.position;
+            if (light.cone && glm::length(aim) > 0)
+                light.direction = glm::normalize(aim);
             scene.lights.push_back(light);
         }
 }

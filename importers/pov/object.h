@@ -47,6 +47,7 @@ struct LightSource {
     std::array<dvec3, 2>
         sides{}; // of the grid's parallelogram, in the middle of which the light is
     std::array<int, 2> counts{1, 1};
+    dvec3 point_at{0, 0, 1}; // where each spotlight of the grid aims
 };
 
 struct Object {

@@ -412,6 +412,9 @@ TEST(PovScene, AreaLightsAreGrids) {
     EXPECT_EQ(scene->lights[5].position, dvec3(2, 6, 1));
     EXPECT_FLOAT_EQ(scene->lights[0].color.x, std::numbers::pi_v<float>);
     EXPECT_TRUE(scene->omissions.empty());
+    const Result<Scene> spots = parse("light_source { 5*y, 1 spotlight point_at 0 area_light 10*x, "
+                                      "z, 2, 1 translate x }");
+    EXPECT_LT(glm::length(spots->lights.at(0).direction - glm::normalize(dvec3(5, -5, 0))), 1e-12);
     const Result<Scene> large = parse("light_source { y, 1 area_light x, z, 17, 1 }");
     EXPECT_EQ(large->lights.size(), 6u);
     EXPECT_EQ(large->omissions.at(0).sentence, "an area light has at most 6 x 6 lights");

@@ -129,6 +129,7 @@ void parse_light_source(Reader& reader, Object& object) {
         else if (!reader.take(','))
             reader.fail_here("'}' or a part of light_source");
     }
+    source.point_at = words.point_at;
     const dvec3 way = words.point_at - light.position;
     if (glm::length(way) > 0)
         light.direction = glm::normalize(way);
