@@ -7,6 +7,7 @@
 #include "core/file/mapped_file.h"
 #include "core/file/scene_on_disk.h"
 #include "core/soup.h"
+#include "core/texture/bump.h"
 
 #include <algorithm>
 #include <array>
@@ -41,15 +42,6 @@ struct Finish {
     bool conserve_energy = false;  // reflected light is not let through, too
 
     bool operator==(const Finish&) const = default;
-};
-
-/// A pattern of unit cubes that are Material::color and `other` by turns. `to_cubes` holds the rows
-/// of a 3 x 4 affine matrix from the world to the space of the cubes.
-struct Checker {
-    vec3 other{0};
-    std::array<dvec4, 3> to_cubes{};
-
-    bool operator==(const Checker&) const = default;
 };
 
 /// How a surface treats light physically, where its file says so. Path tracing goes by this, and
@@ -91,8 +83,18 @@ struct Material {
     vec3 filter{1};
     double ior = 1;
     std::optional<Finish> finish;
-    std::optional<Checker> checker;
     std::optional<Optics> optics;
+    /// The color, and with a finish the light that goes through: color_at() takes the place of
+    /// `color`, and its through() x `transmission` that of transmission x filter. `transmission` is
+    /// 0 where no color of the texture lets light through.
+    std::optional<PlacedTexture> texture;
+    std::optional<Bump> bump; // tilts the normals
+    /// The material below, an index into Scene::materials. It is seen in the light that this one
+    /// lets through. Its own layers follow; kNone: there is none.
+    uint32_t under = kNone;
+    /// Mixes materials in proportion, as a texture does colors: its stops' `texture` are indices
+    /// into Scene::materials. This material then only says what the rest of the scene asks of it.
+    std::optional<PlacedTexture> mix;
 
     bool operator==(const Material&) const = default;
 };
@@ -212,10 +214,12 @@ struct ImageSize {
 };
 
 /// The light that a ray sees where it hits nothing: a gradient from horizon to zenith along the
-/// camera's up, linear RGB.
+/// camera's up, linear RGB. In front of it are the layers, the farthest first, each a texture on a
+/// sphere of radius 1 around the eye.
 struct Background {
     vec3 horizon{0.8f};
     vec3 zenith{0.35f, 0.5f, 0.8f};
+    std::vector<PlacedTexture> layers;
 
     bool operator==(const Background&) const = default;
 };
@@ -237,11 +241,20 @@ struct Instancing {
     uint64_t instances = 0;
 };
 
+/// A kind of thing that is not drawn as its file's author meant, and how often it comes.
+struct Omission {
+    std::string sentence;
+    uint64_t count = 0;
+
+    bool operator==(const Omission&) const = default;
+};
+
 struct Scene {
     std::string name;
     Soup soup;
     std::vector<MeshInfo> meshes;
     std::vector<Material> materials;
+    std::vector<Texture> textures; // a texture's stops name textures before it
     std::vector<Cutout> cutouts;
     std::vector<Light> lights;
     bool moves = false;                // something in it goes by the Moment
@@ -253,6 +266,7 @@ struct Scene {
     float exposure = 1; // lights, background and emission were multiplied by it to fit a picture
     /// POV-Ray's assumed_gamma: a rendered value ^ gamma is linear light. Or kSrgbGamma.
     double gamma = 1;
+    std::vector<Omission> omissions;      // as far as the importer counts them
     std::optional<Instancing> instancing; // none: the file has no instances
     std::vector<MappedFile> files;        // hold the bytes of borrowing chunks and of `saved`
     Bytes saved; // levels that the plugin saved (ovc_scene_config.saved), or empty

@@ -34,8 +34,8 @@ struct Streaming {
 
 struct ImportOptions {
     LogSink log; // receives one warning per kind of thing that Overcast leaves out of a file
-    /// Makes anything unknown, missing or unusable in a scene description (.pbrt) an error instead
-    /// of a warning.
+    /// Makes anything unknown, missing or unusable in a .pbrt, and anything that is not drawn as
+    /// its author meant in a .pov, an error instead of a warning.
     bool strict = false;
     /// The max triangles of a scene description. The reader refuses more before it makes them;
     /// pbrt/census.h says how it counts instances.

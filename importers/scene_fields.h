@@ -14,14 +14,43 @@ namespace ovc {
 template <class A, class T>
 concept Some = std::same_as<std::remove_const_t<A>, T>;
 
+void each_field(auto& io, Some<PlacedTexture> auto& p) {
+    io(p.texture, p.to_texture);
+}
+
+void each_field(auto& io, Some<Bump> auto& b) {
+    io(b.kind, b.amount, b.accuracy, b.pattern);
+}
+
 void each_field(auto& io, Some<Finish> auto& f) {
     io(f.ambient, f.diffuse, f.brilliance, f.phong, f.phong_size, f.specular, f.roughness,
        f.metallic, f.reflection, f.grazing_reflection, f.reflection_falloff, f.fresnel,
        f.metallic_reflection, f.conserve_energy);
 }
 
-void each_field(auto& io, Some<Checker> auto& c) {
-    io(c.other, c.to_cubes);
+void each_field(auto& io, Some<TransparentColor> auto& c) {
+    io(c.rgb, c.filter, c.transmit);
+}
+
+void each_field(auto& io, Some<TextureStep> auto& s) {
+    io(s.kind, s.rows);
+}
+
+void each_field(auto& io, Some<Octaves> auto& o) {
+    io(o.lambda, o.omega, o.count);
+}
+
+void each_field(auto& io, Some<Pattern> auto& p) {
+    io(p.kind, p.parameters, p.wave, p.frequency, p.phase, p.exponent, p.noise, p.turbulence,
+       p.octaves, p.steps);
+}
+
+void each_field(auto& io, Some<TextureStop> auto& s) {
+    io(s.at, s.color, s.texture);
+}
+
+void each_field(auto& io, Some<Texture> auto& t) {
+    io(t.pattern, t.stops);
 }
 
 void each_field(auto& io, Some<Optics> auto& o) {
@@ -29,7 +58,8 @@ void each_field(auto& io, Some<Optics> auto& o) {
 }
 
 void each_field(auto& io, Some<Material> auto& m) {
-    io(m.name, m.color, m.mirror, m.transmission, m.filter, m.ior, m.finish, m.checker, m.optics);
+    io(m.name, m.color, m.mirror, m.transmission, m.filter, m.ior, m.finish, m.optics, m.texture,
+       m.bump, m.under, m.mix);
 }
 
 void each_field(auto& io, Some<Cutout> auto& c) {
@@ -59,7 +89,11 @@ void each_field(auto& io, Some<ImageSize> auto& s) {
 }
 
 void each_field(auto& io, Some<Background> auto& b) {
-    io(b.horizon, b.zenith);
+    io(b.horizon, b.zenith, b.layers);
+}
+
+void each_field(auto& io, Some<Omission> auto& o) {
+    io(o.sentence, o.count);
 }
 
 void each_field(auto& io, Some<Instancing> auto& i) {
@@ -75,8 +109,8 @@ void each_field(auto& io, Some<MeshInfo> auto& m) {
 
 /// Passes all fields except meshes, soup, and what the file's other parts hold.
 void each_field(auto& io, Some<Scene> auto& s) {
-    io(s.name, s.materials, s.cutouts, s.lights, s.may_add_light, s.camera, s.size, s.max_depth,
-       s.background, s.exposure, s.gamma, s.instancing);
+    io(s.name, s.materials, s.textures, s.cutouts, s.lights, s.may_add_light, s.camera, s.size,
+       s.max_depth, s.background, s.exposure, s.gamma, s.omissions, s.instancing);
 }
 
 void each_field(auto& io, Some<FileStamp> auto& f) {

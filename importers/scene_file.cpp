@@ -9,6 +9,7 @@
 #include "importers/readers.h"
 #include "importers/scene_fields.h"
 #include "importers/sound_meshes.h"
+#include "importers/sound_textures.h"
 
 #include <fmt/format.h>
 
@@ -27,7 +28,7 @@ namespace {
 constexpr std::string_view kKind = "ovc scene";
 /// Raise it with every change of scene_fields.h, and when an importer makes another scene of the
 /// same file.
-constexpr uint32_t kVersion = 8;
+constexpr uint32_t kVersion = 9;
 
 /// The checksums of the blocks (core/file/file_blocks.h) of corners, normals and texture
 /// coordinates.
@@ -148,6 +149,8 @@ bool is_sound(const Scene& scene) {
     for (const Material& material : scene.materials)
         if (material.optics && material.optics->boundary > Optics::Boundary::Thin)
             return false;
+    if (!has_sound_textures(scene))
+        return false;
     for (const Cutout& cutout : scene.cutouts)
         if (cutout.opacity.empty() || cutout.beyond > Cutout::Beyond::Hole ||
             cutout.opacity.size() != uint64_t(cutout.width) * cutout.height)

@@ -294,7 +294,10 @@ private:
     const InterruptGuard& interrupt_;
 };
 
-static void report(const RenderJob& job, const RenderStats& stats) {
+static void report(const RenderJob& job, const RenderStats& stats,
+                   const std::vector<Omission>& omissions) {
+    if (const std::string text = omissions_text(omissions); !job.quiet && !text.empty())
+        print_message(text);
     if (!job.quiet && stats.frames_there > 0)
         fmt::print("{} frames were there already\n", stats.frames_there);
     if (!job.quiet && !stats.frames.empty() && (stats.report.complete || !job.shots.empty()))
@@ -488,7 +491,9 @@ static Result<Done> gather_ranks(const Ranks& ranks, RenderStats& stats) {
 
 /// Tells the user of the run, and ends it where there are several ranks and it is not complete.
 /// Returns the exit code.
-static Result<int> tell(const RenderJob& job, const Stopwatch& total, RenderStats& stats) {
+static Result<int> tell(const RenderJob& job, const Stopwatch& total,
+                        const std::vector<Omission>& omissions,
+                        RenderStats& stats) {
     const Ranks* const ranks = job.render.ranks;
     if (ranks && stats.report.complete)
         if (const Result<Done> done = gather_ranks(*ranks, stats); !done)
@@ -498,7 +503,7 @@ static Result<int> tell(const RenderJob& job, const Stopwatch& total, RenderStat
         if (const Result<Done> done = save_text(stats_json(stats), job.stats); !done)
             return done.error();
     if (is_first_rank(job))
-        report(job, stats);
+        report(job, stats, omissions);
     const int code = stats.report.complete ? kExitOk
                      : stats.report.failed ? kExitError
                                            : kExitInterrupted;
@@ -567,7 +572,7 @@ Result<int> render(const RenderJob& job) {
     if (!done)
         return done.error();
     add_what_backend_tells(job, *scene, stage, stats);
-    return tell(job, total, stats);
+    return tell(job, total, scene->omissions, stats);
 }
 
 } // namespace ovc

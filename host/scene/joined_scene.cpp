@@ -32,11 +32,11 @@ public:
         all_.moves = all_.moves || scene.moves;
         take_first(all_.size, scene.size, next.name, "picture's size");
         take_first(all_.max_depth, scene.max_depth, next.name, "depth");
-        take_background(scene, next.name);
         take_gamma(scene, next.name);
         const auto materials = uint32_t(all_.materials.size());
         const auto meshes = uint32_t(all_.meshes.size());
         const auto cutouts = uint32_t(all_.cutouts.size());
+        const auto textures = uint32_t(all_.textures.size());
         const auto move = [](uint32_t& index, uint32_t by) { index += index == kNone ? 0 : by; };
         for (MeshInfo& mesh : scene.meshes) {
             mesh.material += materials;
@@ -45,12 +45,16 @@ public:
             move(mesh.cutout, cutouts);
             move(mesh.shadow_cutout, cutouts);
         }
+        move_textures(scene, textures, materials);
+        append(all_.textures, scene.textures);
         append(all_.materials, scene.materials);
         append(all_.cutouts, scene.cutouts);
         append(all_.meshes, scene.meshes);
         append(all_.soup.chunks, scene.soup.chunks);
         append(all_.lights, scene.lights);
         append(all_.files, scene.files);
+        append(all_.omissions, scene.omissions);
+        take_background(scene, next.name);
         all_.name += " + " + scene.name;
     }
 
@@ -60,6 +64,26 @@ private:
     void warn(const std::string& name, std::string_view what) const {
         say(log_, LogLevel::Warning,
             fmt::format("{}: its {} left out: a scene of several files has one", name, what));
+    }
+
+    /// Moves the indices of the scene's textures and materials, in it and of them.
+    static void move_textures(Scene& scene, uint32_t textures, uint32_t materials) {
+        std::vector<bool> mixes(scene.textures.size());
+        for (Material& material : scene.materials) {
+            material.under += material.under == kNone ? 0 : materials;
+            if (material.mix)
+                mixes[material.mix->texture] = true;
+            if (material.bump)
+                material.bump->pattern.texture += textures;
+            for (std::optional<PlacedTexture>* placed : {&material.texture, &material.mix})
+                if (*placed)
+                    (*placed)->texture += textures;
+        }
+        for (size_t t = 0; t < scene.textures.size(); ++t)
+            for (TextureStop& stop : scene.textures[t].stops)
+                stop.texture += stop.texture == kNoTexture ? 0 : mixes[t] ? materials : textures;
+        for (PlacedTexture& layer : scene.background.layers)
+            layer.texture += textures;
     }
 
     template <class T>

@@ -137,6 +137,14 @@ std::vector<LeftOut> left_out_of(const Scene& scene, const Needs& needs) {
     return left_out;
 }
 
+std::string omissions_text(const std::vector<Omission>& omissions) {
+    std::vector<std::string> items;
+    for (const Omission& omission : omissions)
+        items.push_back(fmt::format("{} ({})", omission.sentence, omission.count));
+    return items.empty() ? ""
+                         : fmt::format("not drawn as its author meant: {}", fmt::join(items, "; "));
+}
+
 std::string left_out_text(const std::vector<LeftOut>& left_out) {
     std::vector<std::string> items;
     for (const LeftOut& item : left_out)

@@ -52,6 +52,10 @@ Needs needs_of(const Scene& scene, const Query& query = {});
 /// All that is not needed, with what it would take.
 std::vector<LeftOut> left_out_of(const Scene& scene, const Needs& needs);
 
+/// Returns "not drawn as its author meant: SENTENCE (COUNT); …", without a line end; empty where
+/// everything is.
+std::string omissions_text(const std::vector<Omission>& omissions);
+
 /// In one line: "vertex normals (1.0 KiB), reflection rays".
 std::string left_out_text(const std::vector<LeftOut>& left_out);
 

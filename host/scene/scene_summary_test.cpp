@@ -78,6 +78,12 @@ TEST(SceneSummary, GlassNeedsReflectionTooAsItMayReflectTotally) {
         EXPECT_EQ(item.what.find("rays"), std::string::npos) << item.what;
 }
 
+TEST(SceneSummary, NamesAndCountsWhatIsNotDrawnAsMeant) {
+    EXPECT_EQ(omissions_text({}), "");
+    EXPECT_EQ(omissions_text({{"fog is left out", 1}, {"an area light is a point", 3}}),
+              "not drawn as its author meant: fog is left out (1); an area light is a point (3)");
+}
+
 TEST(SceneSummary, ListsAllThatIsLeftOutAndNothingThatIsNeeded) {
     Scene scene;
     scene.materials = {{"dull"}, {"glass", vec3(1), 0, 0.5f}};

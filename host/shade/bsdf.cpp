@@ -142,8 +142,9 @@ void Bsdf::take_finish(const SurfacePoint& surface, const Finish& finish) {
     take_shares(surface);
     // On a diffuse surface ambient light stands for light from other surfaces, which path tracing
     // finds itself. POV-Ray 3.7 drops it in the same way where there is radiosity.
-    emission_ = finish.diffuse > 0 ? vec3(0) : surface.color * finish.ambient;
-    diffuse_ = surface.color * finish.diffuse;
+    const vec3 color = surface.opacity * surface.color;
+    emission_ = finish.diffuse > 0 ? vec3(0) : color * finish.ambient;
+    diffuse_ = color * finish.diffuse;
     // A highlight of Blinn's exponent n is as wide as alpha^2 = 2 / (n + 2), and (n + 2) / 8 high
     // over pi where all light is reflected; Phong's of m is as wide as Blinn's of 4 m.
     const bool blinn = finish.specular > 0 && finish.roughness > 0;

@@ -64,8 +64,8 @@ vec3 finish_light(const SurfacePoint& surface, const dvec3& towards, const vec3&
                   bool highlights) {
     const Finish& finish = *surface.material->finish;
     const double cosine = glm::dot(surface.normal, towards);
-    vec3 light =
-        surface.color * (finish.diffuse * float(std::pow(cosine, double(finish.brilliance))));
+    vec3 light = surface.color * (surface.opacity * finish.diffuse *
+                                  float(std::pow(cosine, double(finish.brilliance))));
     if (highlights)
         light +=
             metallic_tint(surface, finish.metallic, cosine) * float(highlight(surface, towards));
@@ -76,8 +76,11 @@ Branches finish_branches(const SurfacePoint& surface, bool total) {
     if (total) // POV-Ray's glass then dims nothing, whatever it reflects and lets through otherwise
         return {vec3(1), vec3(0)};
     Branches parts;
-    parts.mirror = reflected_share(surface);
-    parts.through = surface.material->transmission * surface.material->filter;
+    parts.through = surface.through;
+    if (surface.coats.empty())
+        parts.mirror = reflected_share(surface);
+    for (const Coat& coat : surface.coats)
+        parts.mirror += coat.weight * reflected_share(coat.surface);
     if (surface.material->finish->conserve_energy)
         parts.through *= glm::clamp(vec3(1) - parts.mirror, vec3(0), vec3(1));
     return parts;

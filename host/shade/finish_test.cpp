@@ -118,10 +118,9 @@ TEST(Finish, TotalReflectionLosesNoLight) {
 
 TEST(Checker, TakesTurnsCubeByCube) {
     Scene scene = SeenTriangle({}).scene;
-    Checker checker;
-    checker.other = vec3(0);
-    checker.to_cubes = {dvec4(2, 0, 0, 0), dvec4(0, 2, 0, 0), dvec4(0, 0, 2, 0)};
-    scene.materials[0].checker = checker;
+    scene.textures = {{{.kind = Pattern::Kind::Checker}, {{0, {kColor}}, {1, {vec3(0)}}}}};
+    scene.materials[0].texture =
+        PlacedTexture{0, {dvec4(2, 0, 0, 0), dvec4(0, 2, 0, 0), dvec4(0, 0, 2, 0)}};
     const auto color = [&](double u, double v) {
         return surface_point(scene, {{-1, 1, 0}, 0, {1, -1, 0}}, {1, u, v, {0, 0}}).color;
     };

@@ -70,8 +70,8 @@ void PathTracer::shade(std::span<const Ray> rays, std::span<const Path> paths,
         if (hits[i].is_hit())
             meet(rays[i], paths[i], hits[i], film, sides, spawned);
         else
-            film.add(paths[i].pixel, paths[i].weight * unexposed_ *
-                                         background_color(scene_.background, up_, rays[i].dir));
+            film.add(paths[i].pixel,
+                     paths[i].weight * unexposed_ * background_color(scene_, up_, rays[i].dir));
     for (const RayList<Path>* side : {&sides.mirrored, &sides.through, &sides.bounced})
         spawned.paths.append(*side);
 }

@@ -4,8 +4,10 @@
 // sky for ambient light.
 #include "host/shade/shade.h"
 
+#include "core/texture/pattern.h"
 #include "host/shade/finish.h"
 #include "host/shade/refract.h"
+#include "host/shade/surface/surface_material.h"
 
 #include <algorithm>
 #include <cassert>
@@ -29,10 +31,6 @@ static constexpr double kOffset = 0x1p-48;
 /// rad, is taken as long as it is not above kEdgeShare of the triangle's height.
 static constexpr double kMinEdgeOffsets = 64, kMaxEdgeOffsets = 16384;
 static constexpr double kEdgeShare = 0x1p-20;
-
-/// A checker changes this far off whole numbers, so that a plane through them keeps to one side, as
-/// by POV-Ray's 1e-10 for coordinates near 0.
-static constexpr double kCheckerOffset = 1e-9;
 
 /// Returns a b - c d to two units in the last place, however much cancels. Kahan's algorithm;
 /// Jeannerod, Louvet and Muller 2013.
@@ -71,15 +69,6 @@ static dvec3 interpolated_normal(const Scene& scene, const MeshInfo& mesh, const
     return length > 1e-6 && std::isfinite(length) ? n / length : fallback;
 }
 
-static vec3 material_color(const Material& material, const dvec3& position) {
-    if (!material.checker)
-        return material.color;
-    double sum = 0;
-    for (const dvec4& row : material.checker->to_cubes)
-        sum += std::floor(glm::dot(dvec3(row), position) + row.w + kCheckerOffset);
-    return std::fmod(sum, 2) == 0 ? material.color : material.checker->other;
-}
-
 static dvec3 facing(const dvec3& normal, const dvec3& towards) {
     return glm::dot(normal, towards) < 0 ? -normal : normal;
 }
@@ -101,14 +90,12 @@ static dvec3 weights_off_edges(const Hit& hit, const Triangle& t, double doubled
 
 SurfacePoint surface_point(const Scene& scene, const Ray& ray, const Hit& hit) {
     assert(hit.is_hit() && hit.id.mesh < scene.meshes.size());
-    static const Material kPlain;
     const MeshInfo& mesh = scene.meshes[hit.id.mesh];
     const Triangle t = scene.soup.triangle(hit.id);
     const dvec3 outwards = cross(t[1] - t[0], t[2] - t[0]);
     const double doubled_area = glm::length(outwards); // a hit triangle has an area
 
     SurfacePoint s;
-    s.material = mesh.material < scene.materials.size() ? &scene.materials[mesh.material] : &kPlain;
     s.entering = glm::dot(outwards, ray.dir) <= 0;
     s.view = glm::normalize(ray.dir);
     s.geometric_normal = (s.entering ? 1.0 : -1.0) * (outwards / doubled_area);
@@ -124,18 +111,37 @@ SurfacePoint surface_point(const Scene& scene, const Ray& ray, const Hit& hit) {
     const dvec3 on_plane = w[0] * t[0] + w[1] * t[1] + w[2] * t[2];
     s.position = on_plane + offset * s.geometric_normal;
     s.beyond = on_plane - offset * s.geometric_normal;
-    s.color = material_color(*s.material, on_plane);
+    take_material(scene, mesh.material, on_plane, s);
     return s;
 }
 
-vec3 background_color(const Background& background, const vec3& up, const dvec3& dir) {
-    const float height = float(glm::dot(glm::normalize(dir), dvec3(up)));
-    return glm::mix(background.horizon, background.zenith, std::clamp(height, 0.0f, 1.0f));
+vec3 background_color(const Scene& scene, const vec3& up, const dvec3& dir) {
+    const Background& background = scene.background;
+    const dvec3 towards = glm::normalize(dir);
+    const float height = float(glm::dot(towards, dvec3(up)));
+    vec3 seen = glm::mix(background.horizon, background.zenith, std::clamp(height, 0.0f, 1.0f));
+    for (const PlacedTexture& layer : background.layers) {
+        const TransparentColor c = color_at(scene.textures, layer.texture, layer.at(towards));
+        seen = c.opacity() * c.rgb + c.through() * seen;
+    }
+    return seen;
+}
+
+/// Returns the sum of light(surface) of the surface's coats, each weighted.
+template <class LightOf>
+static vec3 sum_of_coats(const SurfacePoint& surface, const LightOf& light) {
+    vec3 sum(0);
+    for (const Coat& coat : surface.coats)
+        sum += coat.weight * light(coat.surface);
+    return sum;
 }
 
 vec3 ambient_light(const Background& background, const vec3& up, const SurfacePoint& surface) {
+    if (!surface.coats.empty())
+        return sum_of_coats(
+            surface, [&](const SurfacePoint& coat) { return ambient_light(background, up, coat); });
     if (surface.material->finish)
-        return surface.color * surface.material->finish->ambient;
+        return surface.opacity * surface.color * surface.material->finish->ambient;
     const vec3 ground = kGround * background.horizon;
     const vec3 sky = 0.5f * (background.horizon + background.zenith);
     const float openness = 0.5f + 0.5f * float(glm::dot(surface.normal, dvec3(up)));
@@ -174,6 +180,9 @@ FromLight light_at(const Light& light, const dvec3& position) {
 }
 
 vec3 direct_light(const Light& light, const SurfacePoint& surface) {
+    if (!surface.coats.empty())
+        return sum_of_coats(surface,
+                            [&](const SurfacePoint& coat) { return direct_light(light, coat); });
     const FromLight from = light_at(light, surface.position);
     const dvec3 towards = from.towards != dvec3(0) ? from.towards : surface.normal;
     const double cosine = glm::dot(surface.normal, towards);

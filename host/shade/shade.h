@@ -8,8 +8,11 @@
 
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 namespace ovc {
+
+struct Coat;
 
 /// A point on a surface as a ray saw it: both normals face the ray and are of unit length.
 struct SurfacePoint {
@@ -19,8 +22,18 @@ struct SurfacePoint {
     dvec3 normal;           // interpolated where the mesh has normals, else the geometric one
     dvec3 view;             // the ray's direction, of unit length
     const Material* material;
-    vec3 color;    // the material's color here
-    bool entering; // the ray came from outside, from where the corners run counterclockwise
+    vec3 color;        // the material's color here
+    float opacity = 1; // multiplies ambient and diffuse light; 1 where the finish is dimmed already
+    vec3 through{0};   // with a finish: the share of light that goes through here, for each color
+    bool entering;     // the ray came from outside, from where the corners run counterclockwise
+    /// The parts of a material that is layered or mixed; else empty. `color` is then their mean.
+    std::vector<Coat> coats;
+};
+
+/// The same point with one material, and the share of it that is seen, for each color.
+struct Coat {
+    SurfacePoint surface; // without coats
+    vec3 weight;
 };
 
 /// Returns the point where a ray hit; hit: no miss. Both positions lie off the triangle by far less
@@ -30,7 +43,7 @@ struct SurfacePoint {
 SurfacePoint surface_point(const Scene& scene, const Ray& ray, const Hit& hit);
 
 /// Returns the color that a ray in direction `dir` sees where it hits nothing. up: unit length.
-vec3 background_color(const Background& background, const vec3& up, const dvec3& dir);
+vec3 background_color(const Scene& scene, const vec3& up, const dvec3& dir);
 
 /// Returns the radiance that the surface reflects of light from the sky and, weaker, from the
 /// ground, without shadows.

@@ -213,10 +213,28 @@ TEST(RefractedRay, StaysOnItsSideOfThePlaneWhateverTheVertexNormals) {
 
 TEST(BackgroundColor, RunsFromHorizonToZenithAndStaysBelow) {
     const Background b{vec3(1, 0, 0), vec3(0, 0, 1)};
+    Scene scene;
+    scene.background = b;
     const vec3 up(0, 1, 0);
-    EXPECT_EQ(background_color(b, up, {1, 0, 0}), b.horizon);
-    EXPECT_EQ(background_color(b, up, {0, 7, 0}), b.zenith);
-    EXPECT_EQ(background_color(b, up, {0, -7, 0}), b.horizon);
+    EXPECT_EQ(background_color(scene, up, {1, 0, 0}), b.horizon);
+    EXPECT_EQ(background_color(scene, up, {0, 7, 0}), b.zenith);
+    EXPECT_EQ(background_color(scene, up, {0, -7, 0}), b.horizon);
+}
+
+TEST(BackgroundColor, IsSeenThroughItsLayers) {
+    Scene scene;
+    scene.background = {vec3(0.2f, 0.4f, 0.6f), vec3(0.2f, 0.4f, 0.6f), {PlacedTexture{0}}};
+    scene.textures = {{{.kind = Pattern::Kind::Gradient, .parameters = {0, 1, 0}},
+                       {{0.4, {vec3(1)}}, {0.6, {vec3(0.5f, 0.6f, 0.7f), 0.4f}}}}};
+    scene.background.layers[0].to_texture = {dvec4(1, 0, 0, 0), dvec4(0, 1, 0, 0),
+                                             dvec4(0, 0, 1, 0)};
+    EXPECT_EQ(background_color(scene, vec3(0, 1, 0), {5, 0, 0}), vec3(1));
+    // povray 3.7.0.10 prints these numbers for sky_sphere { pigment { rgb <0.2, 0.4, 0.6> }
+    // pigment { rgbf <0.5, 0.6, 0.7, 0.4> } }.
+    const vec3 seen = background_color(scene, vec3(0, 1, 0), {3, 4, 0});
+    EXPECT_NEAR(seen.x, 0.34, 1e-6);
+    EXPECT_NEAR(seen.y, 0.456, 1e-6);
+    EXPECT_NEAR(seen.z, 0.588, 1e-6);
 }
 
 TEST(AmbientLight, IsStrongerFromAbove) {

@@ -24,9 +24,13 @@ static constexpr float kMinShadow = 1 / 4096.0f;
 /// Returns the share of a shadow ray's light that passes the surface. With conserve_energy, light
 /// that POV-Ray's glass reflects is missing behind it, but does not darken its shadow.
 static vec3 light_through(const SurfacePoint& surface) {
-    const Material& material = *surface.material;
-    return material.finish ? material.transmission * material.filter
-                           : branches(surface, /* total= */ false).through;
+    return surface.material->finish ? surface.through
+                                    : branches(surface, /* total= */ false).through;
+}
+
+static bool lets_light_through(const SurfacePoint& surface) {
+    return surface.material->finish ? surface.through != vec3(0)
+                                    : surface.material->transmission > 0;
 }
 
 static bool lets_light_through(const Scene& scene) {
@@ -65,8 +69,7 @@ void Whitted::shade(std::span<const Ray> rays, std::span<const Path> paths,
     all.reserve(rays.size());
     for (size_t i = 0; i < rays.size(); ++i) {
         if (!hits[i].is_hit()) {
-            film.add(paths[i].pixel,
-                     paths[i].weight * background_color(scene_.background, up_, rays[i].dir));
+            film.add(paths[i].pixel, paths[i].weight * background_color(scene_, up_, rays[i].dir));
             continue;
         }
         const Met& met = all.emplace_back(meet(rays[i], paths[i], hits[i], spawned));
@@ -82,9 +85,9 @@ void Whitted::shade(std::span<const Ray> rays, std::span<const Path> paths,
 Whitted::Met Whitted::meet(const Ray& ray, const Path& path, const Hit& hit,
                            Spawned& spawned) const {
     Met met{surface_point(scene_, ray, hit), hit.id, path.pixel, path.weight};
-    const std::optional<Ray> refracted =
-        met.surface.material->transmission > 0 ? refracted_ray(ray, met.surface) : std::nullopt;
-    const bool total = met.surface.material->transmission > 0 && !refracted;
+    const bool clear = lets_light_through(met.surface);
+    const std::optional<Ray> refracted = clear ? refracted_ray(ray, met.surface) : std::nullopt;
+    const bool total = clear && !refracted;
     const Branches parts = branches(met.surface, total);
     const auto follow = [&](const vec3& share, float taken, RayKind kind, int deeper,
                             auto&& child) {

@@ -55,6 +55,7 @@ Result<Scene> read_pbrt(const std::filesystem::path& path, const ImportOptions& 
         return *streamed->error();
     if (!output.is_wanted())
         return Error{"cancelled", ErrorKind::Cancelled};
+    scene.omissions = diagnostics.omissions();
     assert(streamed || has_sound_meshes(scene));
     if (const float exposure = output.exposure(); exposure != 1) {
         pbrt::expose(scene, exposure);

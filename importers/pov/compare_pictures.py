@@ -10,7 +10,8 @@ usage: compare_pictures.py -o DIR [--data DIR] [--index FILE] [--tiers AB] [--on
 Prints a table and writes DIR/index.html with the pairs, the worst first. Errors are root mean
 squares over pixels and colors, in code values of 8 bits as both programs write them. The scenes are
 those of the index (compare.py), or SCENE ... . Where the importer warns that it approximates
-something or leaves it out, the scene is listed with the warning and does not count. With --at-most
+something or leaves it out, the scene is listed with the warning. The last lines count the scenes
+without warnings, and all that both programs draw. With --at-most
 the program fails where a scene is off by more, is not plain, or is drawn by only one of the two.
 Without povray it exits with 77.
 """
@@ -146,6 +147,10 @@ def summary(results, meshes):
         yield (f"of {len(plain)} plain scenes: median {statistics.median(errors):.2f}, "
                f"90 % at most {percentile(errors, 0.9):.2f}, "
                f"worst {max(errors):.2f} of 255; {sum(e > 4 for e in errors)} above 4")
+    drawn = [r["rmse"] for r in results if "rmse" in r]
+    if drawn:
+        yield (f"of {len(drawn)} scenes that both draw: median {statistics.median(drawn):.2f}, "
+               f"90 % at most {percentile(drawn, 0.9):.2f}, worst {max(drawn):.2f} of 255")
     inner = [r["inner"] for r in plain if r["label"] in meshes]
     if inner:
         yield (f"of {len(inner)} of meshes only, away from edges: "

@@ -49,11 +49,22 @@ struct Inherited {
 
 void add_light(const LightSource& source, const dmat4& placed, Scene& scene) {
     Light light = source.light;
-    light.position = dvec3(placed * dvec4(light.position, 1));
     const dvec3 way(placed * dvec4(light.direction, 0));
     if (glm::length(way) > 0)
         light.direction = glm::normalize(way);
-    scene.lights.push_back(light);
+    const auto [columns, rows] = source.counts;
+    light.color /= float(columns * rows);
+    const auto share = [](int i, int count) { return count > 1 ? i / (count - 1.0) - 0.5 : 0; };
+    for (int i = 0; i < columns; ++i)
+        for (int j = 0; j < rows; ++j) {
+            const dvec3 at = source.light.position + share(i, columns) * source.sides[0] +
+                             share(j, rows) * source.sides[1];
+            light.position = dvec3(placed * dvec4(at, 1));
+            const dvec3 aim = dvec3(placed * dvec4(source.point_at, 1)) - light.position;
+            if (light.cone && glm::length(aim) > 0)
+                light.direction = glm::normalize(aim);
+            scene.lights.push_back(light);
+        }
 }
 
 class Gatherer {

@@ -22,19 +22,10 @@ static size_t color_key(const ovc::Material& m) {
     return key;
 }
 
-static Checker checker_of(const Pigment& pigment, const dmat4& placed) {
-    const dmat4 back = glm::inverse(placed * pigment.placed);
-    Checker checker;
-    checker.other = pigment.other->rgb;
-    for (int row = 0; row < 3; ++row)
-        for (int column = 0; column < 4; ++column)
-            checker.to_cubes[size_t(row)][column] = back[column][row];
-    return checker;
-}
-
 uint32_t MaterialTable::number(const Texture& texture, const Color& color, const dmat4& placed,
                                const Interior* interior) {
-    for (const Notes* notes : {&texture.notes, &texture.pigment.notes, &texture.surface.notes})
+    for (const Notes* notes : {&texture.notes, &texture.pigment.notes, &texture.surface.notes,
+                               &texture.mix.notes, &texture.normal.pattern.notes})
         tell_all(*notes, look_);
     if (interior)
         tell_all(interior->notes, look_);
@@ -53,27 +44,57 @@ uint32_t MaterialTable::number(const Texture& texture, const Color& color, const
     return number;
 }
 
+/// Makes the material a mix of those of the stops of the texture's map.
+void MaterialTable::mix(const Texture& texture, const dmat4& placed, const Interior* interior,
+                        ovc::Material& material) {
+    const PatternMap& map = *texture.mix.pattern;
+    const dmat4 within = placed * texture.mix.placed;
+    std::vector<uint32_t> materials;
+    for (const MapStop& stop : map.stops) {
+        materials.push_back(number(*stop.texture, stop.texture->pigment.color, within, interior));
+        const ovc::Material& part = scene_.materials[materials.back()];
+        material.mirror = std::max(material.mirror, part.mirror);
+        material.transmission = std::max(material.transmission, part.transmission);
+    }
+    material.mix = textures_.of_materials(map, materials, within);
+}
+
 ovc::Material MaterialTable::made(const Texture& texture, const Color& color, const dmat4& placed,
-                                  const Interior* interior) const {
+                                  const Interior* interior) {
     ovc::Material material;
+    const Pigment& pigment = texture.pigment;
+    const bool varies = pigment.pattern && !texture.mix.pattern;
     Finish finish = texture.surface.finish;
-    const float opacity = std::clamp(color.opacity(), 0.0f, 1.0f);
-    finish.diffuse *= opacity;
-    finish.ambient =
-        opacity * (texture.surface.ambient * look_.ambient_light + texture.surface.emission);
+    finish.ambient = texture.surface.ambient * look_.ambient_light + texture.surface.emission;
+    if (!varies) {
+        const float opacity = std::clamp(color.opacity(), 0.0f, 1.0f);
+        finish.diffuse *= opacity;
+        finish.ambient *= opacity;
+    }
     material.color = color.rgb;
     material.mirror =
         std::max(max_component(finish.reflection), max_component(finish.grazing_reflection));
-    const vec3 through =
-        texture.surface.refraction * (color.filter * color.rgb + vec3(color.transmit));
-    material.transmission = std::clamp(max_component(through), 0.0f, 1.0f);
-    if (material.transmission > 0)
-        material.filter = glm::clamp(through / material.transmission, 0.0f, 1.0f);
+    const float refraction = texture.surface.refraction;
+    if (varies) {
+        material.transmission = lets_light_through(pigment) ? std::min(refraction, 1.0f) : 0;
+        material.texture = textures_.of_pigments(*pigment.pattern, placed * pigment.placed);
+    } else {
+        const vec3 through = refraction * color.through();
+        material.transmission = std::clamp(max_component(through), 0.0f, 1.0f);
+        if (material.transmission > 0)
+            material.filter = glm::clamp(through / material.transmission, 0.0f, 1.0f);
+    }
     const double ior = texture.surface.ior.value_or(interior ? interior->ior : 1);
     material.ior = is_usable_ior(ior) ? ior : 1;
     material.finish = finish;
-    if (texture.pigment.other)
-        material.checker = checker_of(texture.pigment, placed);
+    if (const Normal& normal = texture.normal; normal.pattern.pattern)
+        material.bump =
+            Bump{normal.kind, normal.amount, normal.accuracy,
+                 textures_.of_pigments(*normal.pattern.pattern, placed * normal.pattern.placed)};
+    if (texture.mix.pattern)
+        mix(texture, placed, interior, material);
+    if (texture.under && material.transmission > 0)
+        material.under = number(*texture.under, texture.under->pigment.color, placed, interior);
     return material;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "importers/pov/flatten.h"
+#include "importers/pov/texture_table.h"
 
 #include <unordered_map>
 
@@ -13,7 +14,7 @@ void tell_all(const Notes& notes, const Look& look);
 /// Adds materials to a scene. Equal ones are added once.
 class MaterialTable {
 public:
-    MaterialTable(const Look& look, Scene& scene) : look_(look), scene_(scene) {}
+    MaterialTable(const Look& look, Scene& scene) : look_(look), scene_(scene), textures_(scene) {}
 
     /// Returns an index into Scene::materials. color: of the texture's pigment, perhaps without its
     /// holes. placed: brings the texture into the world. interior: may be null.
@@ -22,10 +23,13 @@ public:
 
 private:
     ovc::Material made(const Texture& texture, const Color& color, const dmat4& placed,
-                       const Interior* interior) const;
+                       const Interior* interior);
+    void mix(const Texture& texture, const dmat4& placed, const Interior* interior,
+             ovc::Material& material);
 
     const Look& look_;
     Scene& scene_;
+    TextureTable textures_;
     std::unordered_multimap<size_t, uint32_t> by_color_; // numbers of materials
 };
 

@@ -41,9 +41,13 @@ struct EndlessShape {
     SharedFunction<size_t(const Box&, int cells, Facets& out)> cut;
 };
 
+/// A light, or a grid of them that share its color.
 struct LightSource {
     Light light;
-    bool area = false;
+    std::array<dvec3, 2>
+        sides{}; // of the grid's parallelogram, in the middle of which the light is
+    std::array<int, 2> counts{1, 1};
+    dvec3 point_at{0, 0, 1}; // where each spotlight of the grid aims
 };
 
 struct Object {

@@ -8,6 +8,7 @@
 #include "importers/pov/parse/parse_sky.h"
 #include "importers/pov/parse/parse_value.h"
 #include "importers/pov/parse/texture.h"
+#include "importers/pov/texture_table.h"
 #include "importers/pov/words/block.h"
 #include "importers/pov/words/files.h"
 #include "importers/readers.h"
@@ -30,7 +31,9 @@ void parse_defaults(Reader& reader) {
             reader.defaults.pigment = parse_pigment(reader, reader.defaults.pigment);
         else if (reader.take("finish"))
             reader.defaults.surface = parse_finish(reader, reader.defaults.surface);
-        else if (reader.take("normal") || reader.take("camera") || reader.take("radiosity"))
+        else if (reader.take("normal"))
+            reader.defaults.normal = parse_normal(reader, reader.defaults.normal);
+        else if (reader.take("camera") || reader.take("radiosity"))
             skip_braces(reader, "#default");
         else
             reader.fail_here("a texture, pigment or finish");
@@ -56,6 +59,7 @@ public:
         reader_.version_given = options.pov_version.has_value();
         reader_.picture = options.size.value_or(reader_.picture);
         reader_.moment = options.moment;
+        reader_.strict = options.strict;
     }
 
     Scene parse(std::unique_ptr<SourceFile> file) {
@@ -65,8 +69,6 @@ public:
         reader_.open(std::move(file));
         while (reader_.peek().kind != TokenKind::End)
             parse_statement(scene);
-        if (sky_)
-            scene.background = background_of(reader_, *sky_, scene.background.horizon, sky_at_);
         scene.max_depth = trace_level_ - 1; // POV-Ray counts the camera's rays too
         // Before 3.7 scenes made colors for screens, and povray still writes them as they are.
         scene.gamma = gamma_given_ || reader_.has_linear_colors() ? reader_.gamma : kSrgbGamma;
@@ -77,9 +79,12 @@ public:
         look_.defaults = reader_.defaults;
         look_.max_triangles = options_.max_triangles;
         look_.tolerance = options_.tolerance;
-        look_.tell = [&](const Note& note) { reader_.warn(note.kind, note.place, note.sentence); };
+        look_.tell = [&](const Note& note) { reader_.omit(note.kind, note.place, note.sentence); };
+        if (sky_)
+            add_sky(*sky_, look_, scene);
         flatten(objects_, look_, scene);
         scene.moves = reader_.moves;
+        scene.omissions = reader_.omissions();
         return scene;
     }
 
@@ -95,11 +100,11 @@ private:
         else if (reader_.take("global_settings"))
             parse_settings();
         else if (reader_.take("sky_sphere"))
-            parse_sky(token.place);
+            sky_ = parse_sky_sphere(reader_);
         else if (token.is("fog") || token.is("media") || token.is("rainbow") ||
                  token.is("photons") || token.is("radiosity")) {
             reader_.next();
-            reader_.warn(token.name->text, token.place, token.name->text + " is left out");
+            reader_.omit(token.name->text, token.place, token.name->text + " is left out");
             skip_braces(reader_, token.name->text);
         } else if (auto object = take_named_if<ObjectPtr>(reader_))
             objects_.push_back(std::move(*object));
@@ -122,11 +127,6 @@ private:
         reader_.expect('}', "background");
     }
 
-    void parse_sky(const Place& at) {
-        sky_ = parse_sky_sphere(reader_);
-        sky_at_ = at;
-    }
-
     void parse_settings() {
         reader_.expect('{', "global_settings");
         while (!reader_.take('}')) {
@@ -136,12 +136,16 @@ private:
                 gamma_given_ = true;
             } else if (reader_.take("max_trace_level"))
                 trace_level_ = uint32_t(parse_int(reader_, 1, 256, "max_trace_level"));
+            else if (reader_.take("noise_generator"))
+                reader_.noise = parse_int(reader_, 1, 3, "noise_generator") == 1
+                                    ? NoiseKind::Original
+                                    : NoiseKind::Corrected;
             else if (reader_.take("ambient_light"))
                 look_.ambient_light = parse_color(reader_).rgb;
             else if (const Token token = reader_.next();
                      token.kind == TokenKind::Name && token.name->is_keyword) {
                 if (token.is("radiosity") || token.is("photons") || token.is("hf_gray_16"))
-                    reader_.warn(token.name->text, token.place, token.name->text + " is left out");
+                    reader_.omit(token.name->text, token.place, token.name->text + " is left out");
                 skip_arguments(reader_);
             } else
                 reader_.fail(token.place, fmt::format("found {}, expected a part of "
@@ -163,7 +167,6 @@ private:
     Reader reader_;
     Look look_;
     std::optional<SkySphere> sky_;
-    Place sky_at_; // of sky_
     bool gamma_given_ = false;
     uint32_t trace_level_ = 5;
     std::vector<ObjectPtr> objects_;

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 namespace ovc {
 namespace {
@@ -72,6 +73,27 @@ TEST(PovExpression, KnowsTheFunctions) {
     EXPECT_VALUE(2, "max_extent(S).y", "#declare S = sphere { y, 1 scale <3, 1, 1> };");
     EXPECT_VALUE(dvec3(5, 0, 0), "T(0, 1, 0)",
                  "#declare T = function { transform { rotate -90*z scale 5 } }");
+}
+
+/// povray 3.7.0.10 prints these values, of a pigment with float32 in its colors.
+TEST(PovExpression, PatternsAndPigmentsAreFunctions) {
+    const std::string functions =
+        "#declare F = function { pattern { marble turbulence 0.4 scale 0.5 } };"
+        "#declare G = function { pigment { gradient x color_map { [0 rgb <0.2, 0.4, 0.6>] "
+        "[1 rgbt 1] } scale 3 } };"
+        "#declare H = function(x, y, z) { pow(G(x, y, z).red, 2) + F(x, y, z) };"
+        "#declare K = function { G(x, y, z).gray };"
+        "#declare N = function { internal(76) }; #declare M = function { internal(78) };"
+        "#declare C = G(1, 0, 0);";
+    EXPECT_NEAR(value("F(0.3, 0.7, 0.1)", functions).x, 0.204942349, 2e-5);
+    EXPECT_NEAR(value("C.green", functions).x, 0.6, 1e-6);
+    EXPECT_NEAR(value("C.transmit", functions).x, 0.333333343, 1e-6);
+    EXPECT_NEAR(value("H(1, 0.2, 0.3)", functions).x, 0.689955851, 4e-5);
+    EXPECT_NEAR(value("K(1, 0, 0)", functions).x, 0.575600025, 1e-6);
+    EXPECT_NEAR(value("N(0.3, 0.7, 0.1)", functions).x, 0.395001395, 1e-7);
+    EXPECT_NEAR(value("M(0.3, 0.7, 0.1, 1)", functions).x, 0.253942565, 1e-7);
+    const dvec3 turbulence = value("vturbulence(2.1, 0.4, 5, <0.3, 0.7, 0.1>)");
+    EXPECT_LT(glm::length(turbulence - dvec3(-0.206909763, -0.414561417, -0.09054023)), 1e-6);
 }
 
 /// povray 3.7.0.10 prints these values. Ours may differ on curved surfaces because of facets.
@@ -343,15 +365,14 @@ TEST(PovErrors, WhatIsDeclaredAndNotSeenMayBeUnsupported) {
 TEST(PovWarnings, ComeOncePerKind) {
     std::vector<std::string> messages;
     const auto scene =
-        parse_pov("sphere { 0, 1 pigment { bozo } }\nsphere { 0, 1 pigment { wood } }\n"
-                  "sphere { 0, 1 normal { bumps 1 } }",
+        parse_pov("sphere { 0, 1 pigment { mandel 9 } }\nsphere { 0, 1 pigment { mandel 8 } }\n"
+                  "sphere { 0, 1 normal { ripples 1 } }",
                   "x.pov", gather(messages));
     EXPECT_TRUE(scene);
     ASSERT_EQ(messages.size(), 2u);
-    EXPECT_EQ(messages[0],
-              "x.pov:1:25: patterns such as 'bozo' are drawn by their average "
-              "color\n    sphere { 0, 1 pigment { bozo } }\n                            "
-              "^");
+    EXPECT_EQ(messages[0], "x.pov:1:25: the pattern 'mandel' is drawn by its average color\n"
+                           "    sphere { 0, 1 pigment { mandel 9 } }\n"
+                           "                            ^");
 }
 
 TEST(PovScene, ReadsLightsCameraAndSettings) {
@@ -381,6 +402,41 @@ TEST(PovScene, ReadsLightsCameraAndSettings) {
     EXPECT_EQ(scene->soup.chunks[0].mask(), kSeenByCamera | kSeenInReflections);
 }
 
+TEST(PovScene, AreaLightsAreGrids) {
+    const Result<Scene> scene =
+        parse("sphere { 0, 1 } light_source { y, rgb 6 area_light 4*x, 2*z, "
+              "3, 2 jitter adaptive 1 translate 5*y }");
+    ASSERT_TRUE(scene);
+    ASSERT_EQ(scene->lights.size(), 6u);
+    EXPECT_EQ(scene->lights[0].position, dvec3(-2, 6, -1));
+    EXPECT_EQ(scene->lights[5].position, dvec3(2, 6, 1));
+    EXPECT_FLOAT_EQ(scene->lights[0].color.x, std::numbers::pi_v<float>);
+    EXPECT_TRUE(scene->omissions.empty());
+    const Result<Scene> spots = parse("light_source { 5*y, 1 spotlight point_at 0 area_light 10*x, "
+                                      "z, 2, 1 translate x }");
+    EXPECT_LT(glm::length(spots->lights.at(0).direction - glm::normalize(dvec3(5, -5, 0))), 1e-12);
+    const Result<Scene> large = parse("light_source { y, 1 area_light x, z, 17, 1 }");
+    EXPECT_EQ(large->lights.size(), 6u);
+    EXPECT_EQ(large->omissions.at(0).sentence, "an area light has at most 6 x 6 lights");
+}
+
+TEST(PovWarnings, AreCountedOrErrors) {
+    const std::string text = "sphere { 0, 1 pigment { mandel 9 } }\n"
+                             "sphere { 0, 1 pigment { mandel 8 } }\nfog { distance 9 }";
+    const Result<Scene> scene = parse(text);
+    ASSERT_TRUE(scene);
+    EXPECT_EQ(scene->omissions, (std::vector<Omission>{
+                                    {"fog is left out", 1},
+                                    {"the pattern 'mandel' is drawn by its average color", 2},
+                                }));
+    const Result<Scene> refused = parse_pov(text, "x.pov", {.strict = true});
+    ASSERT_FALSE(refused);
+    EXPECT_TRUE(refused.error().message.starts_with(
+        "x.pov:3:1: fog is left out, which --strict makes an error"))
+        << refused.error().message;
+    EXPECT_TRUE(parse_pov("#warning \"so\" sphere { 0, 1 }", "x.pov", {.strict = true}));
+}
+
 TEST(PovScene, GetsNoLightThatItDoesNotHave) {
     const Result<Scene> scene = parse("sphere { 0, 1 finish { ambient 0.2 } }");
     ASSERT_TRUE(scene);
@@ -395,11 +451,11 @@ Material material_of_box(const std::string& look) {
               "#declare N = normal { bumps 1 }; #declare T = texture { pigment { rgb z } finish { "
               "ambient 0.7 } }\nbox { -1, 1 " +
               look + " }");
-    if (!scene || scene->materials.size() != 1) {
-        ADD_FAILURE() << look << ": " << (scene ? "no single material" : scene.error().message);
+    if (!scene || scene->meshes.size() != 1) {
+        ADD_FAILURE() << look << ": " << (scene ? "no single mesh" : scene.error().message);
         return {};
     }
-    return scene->materials[0];
+    return scene->materials[scene->meshes[0].material];
 }
 
 TEST(PovScene, TexturesTakePigmentsAndFinishesByName) {

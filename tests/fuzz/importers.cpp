@@ -125,8 +125,18 @@ Scene scene_with_everything() {
     scene.name = "everything";
     scene.materials.push_back({"plain"});
     scene.materials.push_back({"shiny", vec3(0.1f, 0.2f, 0.3f), 0.5f, 0.25f, vec3(0.5f), 1.5,
-                               Finish{vec3(0.1f)}, Checker{vec3(1)},
+                               Finish{vec3(0.1f)},
                                Optics{.diffuse = vec3(0.3f), .boundary = Optics::Boundary::Thin}});
+    Pattern marble{.kind = Pattern::Kind::Marble, .turbulence = dvec3(0.5)};
+    marble.steps.resize(2);
+    marble.steps[1].kind = TextureStep::Kind::Repeat;
+    scene.textures = {{marble, {{0, {vec3(1)}}, {1, {vec3(0.5f), 0.25f}}}},
+                      {marble, {{0, {}, 0}, {1, {}, 0}}},
+                      {marble, {{0, {}, 0}, {1, {}, 1}}}};
+    scene.materials[1].texture = PlacedTexture{1};
+    scene.materials[1].bump = Bump{.kind = Bump::Kind::Dents};
+    scene.materials.push_back({.name = "mixed", .under = 1, .mix = PlacedTexture{2}});
+    scene.background.layers = {PlacedTexture{0}};
     const std::vector<vec3> corners = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0},
                                        {0, 0, 1}, {1, 0, 1}, {0, 1, 1}};
     scene.add_mesh("a", 0, Chunk::owning(dvec3(0), corners), std::vector<vec3>(6, vec3(0, 0, 1)));

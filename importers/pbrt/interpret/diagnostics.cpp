@@ -16,10 +16,25 @@ Error error_at(const Place& place, std::string_view sentence) {
 
 void Diagnostics::warn(Gravity gravity, const std::string& kind, const Place& place,
                        std::string_view sentence) {
-    if (strict_ && gravity == Gravity::Missing)
+    if (strict_ && gravity == Gravity::Missing) {
         fail(error_at(place, sentence));
-    else if (said_.size() < kMaxWarnings && said_.insert(kind).second)
+        return;
+    }
+    auto known = said_.find(kind);
+    if (known == said_.end()) {
+        if (said_.size() >= kMaxWarnings)
+            return;
+        known = said_.emplace(kind, Omission{std::string(sentence)}).first;
         say(log_, LogLevel::Warning, error_at(place, sentence).message);
+    }
+    ++known->second.count;
+}
+
+std::vector<Omission> Diagnostics::omissions() const {
+    std::vector<Omission> all;
+    for (const auto& [kind, omission] : said_)
+        all.push_back(omission);
+    return all;
 }
 
 bool Diagnostics::fail(Error error) {

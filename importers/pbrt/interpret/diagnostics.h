@@ -4,14 +4,16 @@
 #pragma once
 
 #include "core/result.h"
+#include "core/scene.h"
 #include "core/system/log.h"
 
 #include <cassert>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <unordered_set>
+#include <vector>
 
 namespace ovc::pbrt {
 
@@ -55,13 +57,15 @@ public:
         assert(failed());
         return *error_;
     }
+    /// Returns what warn() was told, by kind.
+    std::vector<Omission> omissions() const;
     const LogSink& log() const { return log_; }
     bool strict() const { return strict_; }
 
 private:
     const LogSink& log_;
     const bool strict_;
-    std::unordered_set<std::string> said_;
+    std::map<std::string, Omission> said_; // by kind
     std::optional<Error> error_;
 };
 

@@ -109,11 +109,11 @@ CameraValue parse_camera(Reader& reader) {
         else if (token.kind == TokenKind::Name) {
             reader.next();
             if (token.is("mesh_camera"))
-                reader.warn("projection", token.place,
+                reader.omit("projection", token.place,
                             fmt::format("the camera {} is taken for a perspective one",
                                         ovc::quoted(token.name->text)));
             else if (token.is("aperture") || token.is("normal"))
-                reader.warn(token.name->text, token.place,
+                reader.omit(token.name->text, token.place,
                             fmt::format("the camera's {} is left out", token.name->text));
             skip_arguments(reader);
         } else if (!reader.take(','))

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -32,7 +33,7 @@ bool parse_light_part(Reader& reader, Words& words, Light& light) {
         words.spot = true;
     else if (reader.take("cylinder")) {
         words.cylinder = true;
-        reader.warn("cylinder light", token.place,
+        reader.omit("cylinder light", token.place,
                     "a cylinder of light is taken for parallel light");
     } else if (reader.take("parallel"))
         light.parallel = true;
@@ -55,18 +56,32 @@ bool parse_light_part(Reader& reader, Words& words, Light& light) {
     return true;
 }
 
-bool parse_other_part(Reader& reader, Words& words) {
+/// The max lights along a side of an area light. Each takes a shadow ray at every hit.
+constexpr int kMaxAlongSide = 6;
+
+/// Reads `axis1, axis2, count1, count2`.
+void parse_area(Reader& reader, const Token& word, LightSource& source) {
+    for (dvec3& side : source.sides) {
+        side = parse_vector(reader);
+        reader.take_comma();
+    }
+    bool fewer = false;
+    for (int& count : source.counts) {
+        const int wanted = parse_int(reader, 1, 1 << 20, "the lights of an area_light");
+        reader.take_comma();
+        count = std::min(wanted, kMaxAlongSide);
+        fewer = fewer || count < wanted;
+    }
+    if (fewer)
+        reader.omit(
+            "area_light", word.place,
+            fmt::format("an area light has at most {} x {} lights", kMaxAlongSide, kMaxAlongSide));
+}
+
+bool parse_other_part(Reader& reader, Words& words, LightSource& source) {
     const Token token = reader.peek();
     if (reader.take("area_light")) {
-        reader.warn("area_light", token.place, "an area light is taken for a point light");
-        for (int i = 0; i < 2; ++i) {
-            parse_vector(reader);
-            reader.take_comma();
-        }
-        for (int i = 0; i < 2; ++i) {
-            parse_float(reader);
-            reader.take_comma();
-        }
+        parse_area(reader, token, source);
     } else if (reader.take("looks_like")) {
         reader.expect('{', "looks_like");
         if (starts_object(reader.peek()))
@@ -79,12 +94,13 @@ bool parse_other_part(Reader& reader, Words& words) {
         parse_modifiers(reader, *changed);
         words.looks_like = changed;
     } else if (reader.take("projected_through")) {
-        reader.warn("projected_through", token.place, "projected_through of a light is left out");
+        reader.omit("projected_through", token.place, "projected_through of a light is left out");
         skip_braces(reader, "projected_through");
     } else if (reader.take("photons"))
         skip_braces(reader, "photons");
     else if (reader.take("circular") || reader.take("orient"))
-        ;
+        reader.omit("area_light " + token.name->text, token.place,
+                    token.name->text + " of an area light is left out");
     else if (reader.take("jitter") || reader.take("area_illumination") ||
              reader.take("media_interaction") || reader.take("media_attenuation"))
         parse_flag(reader);
@@ -106,13 +122,14 @@ void parse_light_source(Reader& reader, Object& object) {
     Words words;
     dmat4 placed(1);
     while (!reader.take('}')) {
-        if (parse_light_part(reader, words, light) || parse_other_part(reader, words))
+        if (parse_light_part(reader, words, light) || parse_other_part(reader, words, source))
             continue;
         if (const auto m = take_transform(reader))
             placed = *m * placed;
         else if (!reader.take(','))
             reader.fail_here("'}' or a part of light_source");
     }
+    source.point_at = words.point_at;
     const dvec3 way = words.point_at - light.position;
     if (glm::length(way) > 0)
         light.direction = glm::normalize(way);

@@ -20,10 +20,10 @@ bool same_look(const Texture& a, const Texture& b) {
     };
     return color(a.pigment.color) == color(b.pigment.color) && a.pigment.holes == b.pigment.holes &&
            a.pigment.uv_mapping == b.pigment.uv_mapping &&
-           (!a.pigment.holes || a.pigment.placed == b.pigment.placed) &&
-           a.pigment.other.has_value() == b.pigment.other.has_value() &&
-           a.surface.finish == b.surface.finish && a.surface.ambient == b.surface.ambient &&
-           a.surface.emission == b.surface.emission;
+           ((!a.pigment.holes && !a.pigment.pattern) || a.pigment.placed == b.pigment.placed) &&
+           a.pigment.pattern == b.pigment.pattern && a.mix.pattern == b.mix.pattern &&
+           a.under == b.under && a.surface.finish == b.surface.finish &&
+           a.surface.ambient == b.surface.ambient && a.surface.emission == b.surface.emission;
 }
 
 /// Triangles by texture. The textures are in the order of their first use.

@@ -139,8 +139,8 @@ void parse_refused(Reader& reader, Object& object) {
     skip_block(reader);
 }
 
-void add_texture(Reader& reader, Object& object, const Texture& texture, const Place& at) {
-    object.texture = object.texture ? layered(reader, texture, *object.texture, at) : texture;
+void add_texture(Object& object, const Texture& texture) {
+    object.texture = object.texture ? layered(texture, *object.texture) : texture;
 }
 
 /// Returns the object's own texture, which its pigment or finish changes.
@@ -151,9 +151,8 @@ Texture& own_texture(Reader& reader, Object& object) {
 }
 
 bool parse_look(Reader& reader, Object& object) {
-    const Token token = reader.peek();
     if (reader.take("texture"))
-        add_texture(reader, object, parse_texture(reader), token.place);
+        add_texture(object, parse_texture(reader));
     else if (reader.take("pigment")) {
         Texture& texture = own_texture(reader, object);
         texture.pigment = parse_pigment(reader, texture.pigment);
@@ -161,12 +160,12 @@ bool parse_look(Reader& reader, Object& object) {
         Texture& texture = own_texture(reader, object);
         texture.surface = parse_finish(reader, texture.surface);
     } else if (reader.take("normal")) {
-        own_texture(reader, object).notes.push_back(normal_note(reader, token));
-        skip_braces(reader, "normal");
+        Texture& texture = own_texture(reader, object);
+        texture.normal = parse_normal(reader, texture.normal);
     } else if (reader.take("material")) {
         const Material material = parse_material(reader);
         if (material.texture)
-            add_texture(reader, object, *material.texture, token.place);
+            add_texture(object, *material.texture);
         if (material.interior)
             object.interior = material.interior;
     } else if (reader.take("interior"))
@@ -217,7 +216,7 @@ void place(Object& object, const dmat4& by) {
     object.placed = by * object.placed;
     // What lies on texture coordinates moves with them, and not once more.
     if (object.texture && !object.uv_mapping && !object.texture->pigment.uv_mapping)
-        object.texture->pigment.placed = by * object.texture->pigment.placed;
+        place(*object.texture, by);
     for (std::vector<ObjectPtr>* list : {&object.clips, &object.bounds})
         for (ObjectPtr& other : *list) {
             auto moved = std::make_shared<Object>(*other); // other objects may share it
@@ -283,8 +282,7 @@ void parse_modifiers(Reader& reader, Object& object) {
             parse_vector(reader);
             object.has_inside = true;
         } else if (const auto texture = take_named_if<Texture>(reader))
-            add_texture(reader, object, *texture,
-                        token.place); // old scenes name it without texture { }
+            add_texture(object, *texture); // old scenes name it without texture { }
         else if (token.kind == TokenKind::Name && token.name->is_keyword && !starts_object(token)) {
             reader.next(); // photons and the like
             if (token.is("interior_texture") || token.is("cutaway_textures"))

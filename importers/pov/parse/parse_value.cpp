@@ -5,6 +5,7 @@
 #include "importers/pov/parse/parse_camera.h"
 #include "importers/pov/parse/parse_object.h"
 #include "importers/pov/parse/parse_sky.h"
+#include "importers/pov/parse/pattern.h"
 #include "importers/pov/parse/texture.h"
 #include "importers/pov/values/function.h"
 #include "importers/pov/values/spline.h"
@@ -79,7 +80,7 @@ Value parse_layers(Reader& reader) {
     Texture texture = parse_texture(reader);
     while (reader.peek_operator().is("texture")) {
         reader.next();
-        texture = layered(reader, parse_texture(reader), texture, reader.place());
+        texture = layered(parse_texture(reader), texture);
     }
     return texture;
 }
@@ -106,11 +107,11 @@ const std::unordered_map<std::string_view, ParseValue> kKinds = {
              return *m;
          return parse_transform_block(r);
      }},
-    {"color_map", [](Reader& r) -> Value { return parse_map(r); }},
-    {"colour_map", [](Reader& r) -> Value { return parse_map(r); }},
-    {"pigment_map", [](Reader& r) -> Value { return parse_map(r); }},
-    {"texture_map", [](Reader& r) -> Value { return parse_map(r); }},
-    {"normal", parse_opaque},
+    {"color_map", [](Reader& r) -> Value { return parse_map(r, MapOf::Pigments); }},
+    {"colour_map", [](Reader& r) -> Value { return parse_map(r, MapOf::Pigments); }},
+    {"pigment_map", [](Reader& r) -> Value { return parse_map(r, MapOf::Pigments); }},
+    {"texture_map", [](Reader& r) -> Value { return parse_map(r, MapOf::Textures); }},
+    {"normal", [](Reader& r) -> Value { return parse_normal(r, {}); }},
     {"normal_map", parse_opaque},
     {"slope_map", parse_opaque},
     {"density", parse_opaque},
@@ -205,10 +206,10 @@ Value parse_value(Reader& reader) {
 
 std::string kind_of(const Value& value) {
     static constexpr const char* kKindNames[] = {
-        "nothing",   "a number",    "a text",      "an object",  "a texture",
-        "a pigment", "a finish",    "an interior", "a material", "a color map",
-        "a sky",     "a transform", "an array",    "a macro",    "a function",
-        "a spline",  "a camera",    "a file",      "a block"};
+        "nothing",     "a number", "a text",      "an object",   "a texture",
+        "a pigment",   "a normal", "a finish",    "an interior", "a material",
+        "a color map", "a sky",    "a transform", "an array",    "a macro",
+        "a function",  "a spline", "a camera",    "a file",      "a block"};
     static_assert(std::size(kKindNames) == std::variant_size_v<Value::variant>);
     return kKindNames[value.index()];
 }

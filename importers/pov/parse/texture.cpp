@@ -2,8 +2,8 @@
 #include "importers/pov/parse/texture.h"
 
 #include "importers/file/text.h"
+#include "importers/pov/parse/pattern.h"
 #include "importers/pov/pictures/image_map.h"
-#include "importers/pov/values/function.h"
 #include "importers/pov/values/transform.h"
 #include "importers/pov/words/block.h"
 
@@ -17,235 +17,9 @@ namespace ovc::pov {
 
 namespace {
 
-template <size_t N>
-bool is_one_of(const Token& token, const std::string_view (&words)[N]) {
-    return token.kind == TokenKind::Name &&
-           std::find(std::begin(words), std::end(words), token.name->text) != std::end(words);
-}
-
-/// Returns whether the pattern takes a list of colors, pigments or textures.
-bool is_list_pattern(const Token& token) {
-    static constexpr std::string_view kWords[] = {"brick",   "checker",    "cubic",
-                                                  "hexagon", "square",     "tiles",
-                                                  "object",  "triangular", "tiling_list"};
-    return is_one_of(token, kWords);
-}
-
-/// Returns whether the pattern takes a map. Without one it runs from black to white.
-bool is_map_pattern(const Token& token) {
-    static constexpr std::string_view kWords[] = {
-        "agate",    "aoi",          "average",         "boxed",     "bozo",      "bumps",
-        "cells",    "crackle",      "cylindrical",     "dents",     "facets",    "gradient",
-        "granite",  "julia",        "leopard",         "magnet",    "mandel",    "marble",
-        "onion",    "pavement",     "pigment_pattern", "planar",    "potential", "quilted",
-        "radial",   "ripples",      "slope",           "spherical", "spiral1",   "spiral2",
-        "spotted",  "tiling",       "waves",           "wood",      "wrinkles",  "density_file",
-        "function", "image_pattern"};
-    return is_one_of(token, kWords);
-}
-
 /// Returns whether the token is a word of the language, not an identifier.
 bool is_word(const Token& token) {
     return token.kind == TokenKind::Name && token.name->is_keyword;
-}
-
-bool is_color_map(const Token& token) {
-    static constexpr std::string_view kWords[] = {"color_map", "colour_map", "pigment_map",
-                                                  "texture_map"};
-    return is_one_of(token, kWords);
-}
-
-/// The weighted mean of colors.
-class Mean {
-public:
-    void add(const Color& color, float weight) {
-        sum_.rgb += weight * color.rgb;
-        sum_.filter += weight * color.filter;
-        sum_.transmit += weight * color.transmit;
-        weight_ += weight;
-    }
-    Color color() const {
-        const float scale = weight_ > 0 ? 1 / weight_ : 0;
-        return {scale * sum_.rgb, scale * sum_.filter, scale * sum_.transmit};
-    }
-    bool empty() const { return weight_ == 0; }
-
-private:
-    Color sum_;
-    float weight_ = 0;
-};
-
-Color mean_of(const Pigment& p) {
-    if (!p.other)
-        return p.color;
-    Mean mean;
-    mean.add(p.color, 1);
-    mean.add(*p.other, 1);
-    return mean.color();
-}
-
-Notes average_note(Reader& reader, const Token& pattern) {
-    return {reader.note("pattern", pattern.place,
-                        fmt::format("patterns such as {} are drawn by their average color",
-                                    ovc::quoted(pattern.name->text)))};
-}
-
-Pigment parse_pigment_body(Reader& reader, Pigment pigment, char end);
-
-/// Reads one color of a list or map: a color, pigment or texture. `end` ends an entry of a map; it
-/// is 0 for a list.
-Color parse_entry(Reader& reader, char end) {
-    if (reader.take("pigment"))
-        return mean_of(parse_pigment(reader, reader.defaults.pigment));
-    if (reader.take("texture"))
-        return mean_of(parse_texture(reader).pigment);
-    if (const auto texture = take_named<Texture>(reader); texture)
-        return mean_of(texture->pigment);
-    if (end == 0)
-        return parse_color(reader);
-    return mean_of(parse_pigment_body(reader, reader.defaults.pigment, end));
-}
-
-/// Returns whether a further entry of a list pattern follows, and takes the comma before it.
-bool list_goes_on(Reader& reader) {
-    if (reader.take(','))
-        return true;
-    const Token next = reader.peek();
-    return starts_color(next) || next.is("pigment") || next.is("texture") ||
-           named<Number>(reader, next);
-}
-
-void parse_list(Reader& reader, const Token& pattern, Pigment& pigment) {
-    if (pattern.is("object"))
-        skip_braces(reader, "object");
-    if (pattern.is("square") || pattern.is("tiles") || pattern.is("triangular"))
-        pigment.color = {vec3(0.5f)};
-    std::vector<Color> colors;
-    const Token first = reader.peek();
-    if (starts_number(reader, first) || first.is("pigment") || first.is("texture") ||
-        named<Pigment>(reader, first) || named<Texture>(reader, first)) {
-        do {
-            const Token next = reader.peek();
-            if (const auto named_pigment = named<Pigment>(reader, next)) {
-                colors.push_back(mean_of(*named_pigment));
-                reader.next();
-            } else
-                colors.push_back(parse_entry(reader, 0));
-        } while (list_goes_on(reader));
-    }
-    if (pattern.is("checker")) {
-        static const std::array<Color, 2> kDefaults = {Color{{0, 0, 1}}, Color{{0, 1, 0}}};
-        pigment.color = colors.size() > 0 ? colors[0] : kDefaults[0];
-        pigment.other = colors.size() > 1 ? colors[1] : kDefaults[1];
-        pigment.placed = dmat4(1);
-        pigment.holes.reset();
-        pigment.notes.clear();
-        if (pigment.color.opacity() != 1 || pigment.other->opacity() != 1)
-            pigment.notes = {
-                reader.note("checker", pattern.place,
-                            "a checker lets through all over what its first color does")};
-        return;
-    }
-    Mean mean;
-    for (const Color& color : colors)
-        mean.add(color, 1);
-    if (!mean.empty())
-        pigment.color = mean.color();
-    pigment.other.reset();
-    pigment.holes.reset();
-    pigment.notes = average_note(reader, pattern);
-}
-
-/// The average color of a map pattern without a map.
-const Color kMiddle{vec3(0.5f)};
-
-void set_plain(Pigment& pigment, const Color& color) {
-    pigment.color = color;
-    pigment.other.reset();
-    pigment.holes.reset();
-    pigment.notes.clear();
-}
-
-Pigment parse_pigment_body(Reader& reader, Pigment pigment, char end) {
-    const Deeper deeper(reader);
-    bool mapped = false;
-    while (!reader.peek().is(end)) {
-        const Token token = reader.peek();
-        if (const auto named_pigment = take_named_if<Pigment>(reader)) {
-            pigment = *named_pigment;
-        } else if (const auto m = take_transform(reader)) {
-            pigment.placed = *m * pigment.placed;
-        } else if (starts_color(token) ||
-                   (token.kind == TokenKind::Name && !token.name->is_keyword &&
-                    starts_number(reader, token))) {
-            set_plain(pigment, parse_color(reader));
-        } else if (is_color_map(token)) {
-            reader.next();
-            pigment.color = parse_map(reader).average;
-            pigment.other.reset();
-            pigment.holes.reset();
-            mapped = true;
-        } else if (is_list_pattern(token)) {
-            reader.next();
-            parse_list(reader, token, pigment);
-        } else if (token.is("image_map")) {
-            reader.next();
-            parse_image_map(reader, token, pigment);
-        } else if (reader.take("uv_mapping")) {
-            pigment.uv_mapping = parse_flag(reader);
-            if (pigment.other)
-                pigment.notes = {left_out(reader, "a checker", token)};
-        } else if (token.is("quick_color") || token.is("quick_colour")) {
-            reader.next();
-            parse_color(reader);
-        } else if (is_map_pattern(token)) {
-            reader.next();
-            pigment.notes = average_note(reader, token);
-            if (!mapped)
-                pigment.color = kMiddle;
-            pigment.other.reset();
-            pigment.holes.reset();
-            if (token.is("function"))
-                parse_function(reader);
-            else
-                skip_arguments(reader);
-        } else if (is_word(token)) {
-            reader.next(); // turbulence, octaves, warp and the like
-            if (pigment.other)
-                pigment.notes = {left_out(reader, "a checker", token)};
-            skip_arguments(reader);
-        } else if (starts_number(reader, token)) {
-            set_plain(pigment, parse_color(reader));
-        } else if (!reader.take(','))
-            reader.fail_here("a part of a pigment");
-    }
-    return pigment;
-}
-
-struct MapEntry {
-    double at;
-    Color color;
-};
-
-Color average_of(std::vector<MapEntry> entries) {
-    if (entries.empty())
-        return kMiddle;
-    std::stable_sort(entries.begin(), entries.end(),
-                     [](const MapEntry& a, const MapEntry& b) { return a.at < b.at; });
-    entries.insert(entries.begin(), {0, entries.front().color});
-    entries.push_back({1, entries.back().color});
-    Mean mean;
-    for (size_t i = 0; i + 1 < entries.size(); ++i) {
-        const float width =
-            float(std::clamp(entries[i + 1].at, 0.0, 1.0) - std::clamp(entries[i].at, 0.0, 1.0));
-        mean.add(entries[i].color, 0.5f * width);
-        mean.add(entries[i + 1].color, 0.5f * width);
-    }
-    return mean.empty() ? entries.front().color : mean.color();
-}
-
-bool is_texture_pattern(const Token& token) {
-    return is_list_pattern(token) || is_map_pattern(token);
 }
 
 /// Reads the amount of diffuse, phong or specular, which may be given as an albedo.
@@ -323,10 +97,6 @@ bool parse_finish_part(Reader& reader, Surface& surface) {
 
 } // namespace
 
-const Note* normal_note(Reader& reader, const Token& word) {
-    return reader.note("normal", word.place, "normal patterns are left out");
-}
-
 const Note* left_out(Reader& reader, std::string_view of, const Token& word) {
     assert(word.name);
     const std::string what = fmt::format("{} of {}", word.name->text, of);
@@ -349,48 +119,54 @@ void skip_arguments(Reader& reader) {
     }
 }
 
-ColorMap parse_map(Reader& reader) {
+Pigment parse_pigment_parts(Reader& reader, Pigment pigment, char end) {
     const Deeper deeper(reader);
-    reader.expect('{', "a map");
-    std::vector<MapEntry> entries;
-    while (!reader.take('}')) {
-        if (const auto map = take_named_if<ColorMap>(reader)) {
-            reader.expect('}', "the name of a map");
-            return *map;
-        }
-        reader.expect('[', "a map's brace");
-        // Entries of `average` may come without a number.
-        const bool has_number =
-            starts_number(reader, reader.peek()) && !starts_color(reader.peek());
-        const double at = has_number ? parse_float(reader) : double(entries.size());
-        reader.take_comma();
+    PatternParts pattern(reader, pigment, MapOf::Pigments);
+    const auto plain = [&](const Color& color) {
+        pattern.forget();
+        pigment.color = color;
+        pigment.holes.reset();
+        pigment.notes.clear();
+    };
+    while (!reader.peek().is(end)) {
         const Token token = reader.peek();
-        if (token.kind == TokenKind::Number || token.is('(') || token.is('<')) {
-            const Number n = parse_number(reader);
-            reader.take_comma();
-            if (reader.peek().is(']'))
-                entries.push_back({at, color_of(resized(reader, n, 5))});
-            else { // [from to color color]
-                entries.push_back({at, parse_color(reader)});
-                reader.take_comma();
-                entries.push_back({n.v[0], parse_color(reader)});
-            }
-        } else {
-            const bool plain = starts_color(token);
-            entries.push_back({at, plain ? parse_color(reader) : parse_entry(reader, ']')});
-        }
-        // More may follow the color, such as a second one. It is skipped.
-        while (!reader.peek().is(']'))
-            if (const Token rest = reader.next(); rest.kind == TokenKind::End)
-                reader.fail(rest.place, "found no ']' in a map");
-        reader.expect(']', "an entry of a map");
+        if (const auto named_pigment = take_named_if<Pigment>(reader)) {
+            pigment = *named_pigment;
+            pattern.restart();
+        } else if (const auto m = take_transform(reader)) {
+            pigment.placed = *m * pigment.placed;
+        } else if (starts_color(token) ||
+                   (token.kind == TokenKind::Name && !token.name->is_keyword &&
+                    starts_number(reader, token))) {
+            plain(parse_color(reader));
+        } else if (token.is("image_map")) {
+            reader.next();
+            pattern.forget();
+            parse_image_map(reader, token, pigment);
+        } else if (reader.take("uv_mapping")) {
+            pigment.uv_mapping = parse_flag(reader);
+        } else if (token.is("quick_color") || token.is("quick_colour")) {
+            reader.next();
+            parse_color(reader);
+        } else if (pattern.take()) {
+        } else if (is_word(token)) {
+            reader.next();
+            skip_arguments(reader);
+        } else if (starts_number(reader, token)) {
+            plain(parse_color(reader));
+        } else if (!reader.take(','))
+            reader.fail_here("a part of a pigment");
     }
-    return {average_of(std::move(entries))};
+    pattern.finish();
+    if (pigment.uv_mapping && pigment.pattern)
+        pigment.notes.push_back(
+            reader.note("uv_mapping", reader.place(), "uv_mapping of a pattern is left out"));
+    return pigment;
 }
 
 Pigment parse_pigment(Reader& reader, const Pigment& base) {
     reader.expect('{', "pigment");
-    Pigment pigment = parse_pigment_body(reader, base, '}');
+    Pigment pigment = parse_pigment_parts(reader, base, '}');
     reader.expect('}', "a pigment");
     return pigment;
 }
@@ -443,8 +219,7 @@ Material parse_material(Reader& reader) {
         if (const auto named_material = take_named_if<Material>(reader))
             material = *named_material;
         else if (reader.take("texture"))
-            material.texture = material.texture ? layered(reader, parse_texture(reader),
-                                                          *material.texture, reader.place())
+            material.texture = material.texture ? layered(parse_texture(reader), *material.texture)
                                                 : parse_texture(reader);
         else if (reader.take("interior"))
             material.interior = parse_interior(reader, material.interior.value_or(Interior{}));
@@ -455,7 +230,7 @@ Material parse_material(Reader& reader) {
             skip_braces(reader, "interior_texture");
         } else if (const auto m = take_transform(reader)) {
             if (material.texture)
-                material.texture->pigment.placed = *m * material.texture->pigment.placed;
+                place(*material.texture, *m);
         } else
             reader.fail_here("a part of a material");
     }
@@ -463,40 +238,69 @@ Material parse_material(Reader& reader) {
 }
 
 /// Reads `tiles { texture { … } tile2 texture { … } }`, a checker of two textures in old scenes.
-/// The result has the finish of the first.
 static Texture parse_tiles(Reader& reader) {
     reader.expect('{', "tiles");
-    std::vector<Texture> both;
+    auto map = std::make_shared<PatternMap>();
+    map->pattern.kind = Pattern::Kind::Checker;
+    const auto add = [&](const Texture& texture) {
+        MapStop stop;
+        stop.at = double(map->stops.size());
+        stop.texture = std::make_shared<const Texture>(texture);
+        map->stops.push_back(std::move(stop));
+    };
     while (!reader.take('}')) {
         if (reader.take("texture"))
-            both.push_back(parse_texture(reader));
+            add(parse_texture(reader));
         else if (const auto texture = take_named_if<Texture>(reader))
-            both.push_back(*texture);
+            add(*texture);
         else if (!reader.take("tile2") && !reader.take(','))
             reader.fail_here("'}' or a texture of tiles");
     }
-    if (both.empty())
+    if (map->stops.empty())
         return reader.defaults;
-    both.front().pigment.other = mean_of(both.back().pigment);
-    return both.front();
+    Texture both = *map->stops.front().texture;
+    both.mix = {};
+    both.mix.pattern = std::move(map);
+    return both;
 }
 
-Texture parse_texture(Reader& reader) {
+/// A mix of textures that has been read becomes a part of the texture.
+static void take_mix(Reader& reader, PatternParts& mix, Texture& texture) {
+    mix.finish();
+    if (mix.stops().empty() && !texture.mix.pattern)
+        return;
+    const std::vector<MapStop>& stops =
+        texture.mix.pattern ? texture.mix.pattern->stops : mix.stops();
+    const auto is_texture = [](const MapStop& stop) { return stop.texture != nullptr; };
+    if (!std::all_of(stops.begin(), stops.end(), is_texture))
+        reader.fail(reader.place(),
+                    "found colors in a map or list of a texture, expected textures");
+    const Texture& first = *stops.front().texture;
+    texture.pigment = first.pigment;
+    texture.surface = first.surface;
+    texture.normal = first.normal;
+    if (!texture.mix.pattern) {
+        texture.pigment = {};
+        texture.pigment.color = texture.mix.color;
+    }
+}
+
+Texture parse_texture_parts(Reader& reader, Texture texture, char end) {
     const Deeper deeper(reader);
-    reader.expect('{', "texture");
-    Texture texture = reader.defaults;
-    while (!reader.take('}')) {
+    PatternParts mix(reader, texture.mix, MapOf::Textures);
+    while (!reader.peek().is(end)) {
         const Token token = reader.peek();
-        if (const auto named_texture = take_named_if<Texture>(reader))
+        if (const auto named_texture = take_named_if<Texture>(reader)) {
             texture = *named_texture;
-        else if (const auto named_pigment = take_named_if<Pigment>(reader))
+            mix.restart();
+        } else if (const auto named_pigment = take_named_if<Pigment>(reader))
             texture.pigment = *named_pigment;
         else if (const auto named_finish = take_named_if<Surface>(reader))
             texture.surface = *named_finish;
-        else if (take_named_if<Opaque>(reader))
-            texture.notes.push_back(normal_note(reader, token));
+        else if (const auto named_normal = take_named_if<Normal>(reader))
+            texture.normal = *named_normal;
         else if (const auto m = take_transform(reader))
-            texture.pigment.placed = *m * texture.pigment.placed;
+            place(texture, *m);
         else if (reader.take("pigment"))
             texture.pigment = parse_pigment(reader, texture.pigment);
         else if (reader.take("finish"))
@@ -505,52 +309,45 @@ Texture parse_texture(Reader& reader) {
             texture.pigment.uv_mapping = parse_flag(reader);
         else if (reader.take("tiles"))
             texture = parse_tiles(reader);
-        else if (reader.take("normal")) {
-            texture.notes.push_back(normal_note(reader, token));
-            skip_braces(reader, "normal");
-        } else if (is_texture_pattern(token) || is_color_map(token)) {
-            reader.next();
-            if (is_color_map(token))
-                texture.pigment.color = parse_map(reader).average;
-            else if (is_list_pattern(token))
-                parse_list(reader, token, texture.pigment);
-            else {
-                texture.pigment.notes = average_note(reader, token);
-                skip_arguments(reader);
-            }
+        else if (reader.take("normal"))
+            texture.normal = parse_normal(reader, texture.normal);
+        else if (mix.take()) {
         } else if (is_word(token)) {
             reader.next();
             skip_arguments(reader);
         } else if (!reader.take(','))
             reader.fail_here("a part of a texture");
     }
+    take_mix(reader, mix, texture);
     return texture;
 }
 
-Texture layered(Reader& reader, const Texture& upper, const Texture& lower, const Place& at) {
-    const Color& over = upper.pigment.color;
-    if (over.filter <= 0 && over.transmit <= 0 && !upper.pigment.other)
-        return upper;
+Texture parse_texture(Reader& reader) {
+    reader.expect('{', "texture");
+    Texture texture = parse_texture_parts(reader, reader.defaults, '}');
+    reader.expect('}', "a texture");
+    return texture;
+}
+
+void place(Texture& texture, const dmat4& by) {
+    texture.pigment.placed = by * texture.pigment.placed;
+    texture.mix.placed = by * texture.mix.placed;
+    texture.normal.pattern.placed = by * texture.normal.pattern.placed;
+    if (texture.under) {
+        Texture under = *texture.under;
+        place(under, by);
+        texture.under = std::make_shared<const Texture>(std::move(under));
+    }
+}
+
+Texture layered(const Texture& upper, const Texture& lower) {
     Texture both = upper;
-    both.pigment.holes.reset(); // what is below fills them
-    const Color under = mean_of(lower.pigment);
-    const auto seen = [&](const Color& c) {
-        const vec3 through = c.filter * c.rgb + vec3(c.transmit);
-        Color sum;
-        sum.rgb = std::max(0.0f, c.opacity()) * c.rgb + through * under.rgb;
-        const float left = std::clamp(c.filter + c.transmit, 0.0f, 1.0f);
-        sum.filter = left * under.filter;
-        sum.transmit = left * under.transmit;
-        return sum;
-    };
-    both.pigment.color = seen(over);
-    if (upper.pigment.other)
-        both.pigment.other = seen(*upper.pigment.other);
-    both.surface = lower.surface;
-    both.surface.ior = upper.surface.ior; // as in POV-Ray
-    both.surface.refraction = upper.surface.refraction;
-    both.notes.insert(both.notes.end(), lower.notes.begin(), lower.notes.end());
-    both.notes.push_back(reader.note("layers", at, "layers of a texture are drawn as one"));
+    both.pigment.holes.reset(); // the lower layer fills them
+    if (!upper.under) {
+        both.under = std::make_shared<const Texture>(lower);
+        return both;
+    }
+    both.under = std::make_shared<const Texture>(layered(*upper.under, lower));
     return both;
 }
 

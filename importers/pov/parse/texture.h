@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads textures, pigments, finishes and interiors. A pattern becomes its average color.
+// Reads textures, pigments, finishes and interiors.
 #pragma once
 
 #include "importers/pov/values/expression.h"
@@ -10,16 +10,19 @@ namespace ovc::pov {
 /// that the block names, and the block's parts change it.
 Texture parse_texture(Reader& reader);
 Pigment parse_pigment(Reader& reader, const Pigment& base);
+Normal parse_normal(Reader& reader, const Normal& base);
 Surface parse_finish(Reader& reader, const Surface& base);
 Interior parse_interior(Reader& reader, const Interior& base);
 Material parse_material(Reader& reader);
-/// Reads a map of colors, pigments or textures from its { on.
-ColorMap parse_map(Reader& reader);
+/// Reads the parts of a pigment or texture up to `end`, which stays.
+Pigment parse_pigment_parts(Reader& reader, Pigment pigment, char end);
+Texture parse_texture_parts(Reader& reader, Texture texture, char end);
 
-/// Returns one texture that looks like `upper` on top of `lower`.
-Texture layered(Reader& reader, const Texture& upper, const Texture& lower, const Place& at);
+/// Returns `upper`, with its layers, on top of `lower`.
+Texture layered(const Texture& upper, const Texture& lower);
+/// Moves the texture with all its layers.
+void place(Texture& texture, const dmat4& by);
 
-const Note* normal_note(Reader& reader, const Token& word);
 /// Returns the note "WORD of a finish is left out", where `of` is "a finish".
 const Note* left_out(Reader& reader, std::string_view of, const Token& word);
 

@@ -171,7 +171,10 @@ TEST(PovHoles, AreFilledByALayerBelow) {
         read("box { 0, 1 texture { pigment { rgb x } } texture { pigment { image_map "
              "{ png PNG } } } }");
     EXPECT_EQ(found.scene.meshes[0].cutout, kNone);
-    EXPECT_EQ(found.scene.materials[0].transmission, 0);
+    const Material& upper = found.scene.materials[found.scene.meshes[0].material];
+    ASSERT_LT(upper.under, found.scene.materials.size());
+    EXPECT_EQ(found.scene.materials[upper.under].color, vec3(1, 0, 0));
+    EXPECT_EQ(found.scene.materials[upper.under].transmission, 0);
 }
 
 TEST(PovHoles, AreOfOneMeshWhereThePictureIsOne) {

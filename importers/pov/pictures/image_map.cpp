@@ -80,7 +80,6 @@ void parse_image_map(Reader& reader, const Token& word, Pigment& pigment) {
         pigment.notes = {reader.note(kind, at, sentence)};
     };
     pigment.color = {vec3(0.5f)};
-    pigment.other.reset();
     pigment.holes.reset();
     pigment.placed = dmat4(1);
     reader.expect('{', "image_map");

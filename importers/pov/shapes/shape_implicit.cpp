@@ -254,7 +254,7 @@ void parse_blob(Reader& reader, Object& object) {
             continue;
         if (holder.texture && !object.texture) {
             object.texture = holder.texture;
-            reader.warn("blob texture", object.place,
+            reader.omit("blob texture", object.place,
                         "a blob has the texture of its first part throughout");
         }
         if (!(part.radius > 0))

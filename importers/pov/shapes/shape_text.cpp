@@ -44,7 +44,7 @@ Font& parse_font(Reader& reader) {
             reader.fail(at, fmt::format("found no file {}, expected a font, and there is none on "
                                         "this machine that could stand in for it",
                                         ovc::quoted(name)));
-        reader.warn(
+        reader.omit(
             "font " + name, at,
             fmt::format("found no font {}; {} stands in for it", ovc::quoted(name), path.string()));
     }

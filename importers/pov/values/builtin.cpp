@@ -2,6 +2,7 @@
 // Tables of the language's functions and constants, each in one row.
 #include "importers/pov/values/builtin.h"
 
+#include "core/texture/noise.h"
 #include "importers/file/text.h"
 #include "importers/pov/values/builtin_object.h"
 #include "importers/pov/values/transform.h"
@@ -218,6 +219,21 @@ Number refuse(Reader& reader, const Token& token) {
     reader.fail(token.place, fmt::format("{}() is not supported", token.name->text));
 }
 
+/// Reads `(lambda, omega, octaves, point)`.
+Number vturbulence(Reader& reader, const Token& token) {
+    reader.expect('(', token.name->text);
+    Octaves octaves;
+    octaves.lambda = parse_float(reader);
+    reader.take_comma();
+    octaves.omega = parse_float(reader);
+    reader.take_comma();
+    octaves.count = uint64_t(parse_int(reader, 1, int(kMaxOctaves), "octaves"));
+    reader.take_comma();
+    const dvec3 at = parse_vector(reader);
+    reader.expect(')', token.name->text);
+    return Number::of(turbulence(at, octaves));
+}
+
 template <int X, int Y, int Z>
 Number axis(Reader&, const Token&) {
     return Number::of(dvec3(X, Y, Z));
@@ -311,7 +327,7 @@ const std::unordered_map<std::string_view, Builtin> kBuiltins = {
     {"max_extent", parse_extent},
     {"trace", parse_trace},
     {"inside", refuse},
-    {"vturbulence", refuse}};
+    {"vturbulence", vturbulence}};
 
 /// A loop of concat() could otherwise fill the memory.
 constexpr size_t kLongestText = size_t(1) << 20;

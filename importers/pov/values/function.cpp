@@ -2,7 +2,10 @@
 // Turns formulas into trees of closures.
 #include "importers/pov/values/function.h"
 
+#include "core/texture/pattern.h"
 #include "importers/file/text.h"
+#include "importers/pov/parse/texture.h"
+#include "importers/pov/texture_table.h"
 #include "importers/pov/values/builtin.h"
 #include "importers/pov/values/internal.h"
 #include "importers/pov/values/spline.h"
@@ -172,14 +175,17 @@ private:
             reader_.put_back(token);
             n = *take_named<Number>(reader_);
         }
-        if (!reader_.take('.'))
-            return n.v[0];
+        return reader_.take('.') ? n.v[parse_component()] : n.v[0];
+    }
+
+    /// Returns the index of the component whose name comes next, behind the point.
+    size_t parse_component() {
         static constexpr std::string_view kParts[] = {"x", "y", "z", "t", "transmit"};
         static constexpr std::string_view kColors[] = {"red", "green", "blue", "filter", ""};
         const Token part = reader_.next();
         for (size_t i = 0; i < 5; ++i)
             if (part.is(kParts[i]) || part.is(kColors[i]))
-                return n.v[i];
+                return i;
         reader_.fail(part.place, fmt::format("found {} after '.', expected a component such as x",
                                              found(part)));
     }
@@ -233,8 +239,8 @@ private:
         const std::vector<Formula> given = arguments(token);
         called_ = std::max(called_, function.depth);
         count_operation();
-        if (reader_.take('.'))
-            reader_.next(); // a component of a pigment's color; call() refuses such functions
+        if (function.color)
+            return call_color(given, function.color);
         return [given, function = std::move(function), token,
                 this_reader = &reader_](std::span<const double> x) {
             std::vector<double> values;
@@ -242,6 +248,30 @@ private:
                 values.push_back(formula(x));
             return pov::call(*this_reader, token, function, values).v[0];
         };
+    }
+
+    /// Reads the component of a pigment's color, such as .red, behind the pigment's point.
+    Formula call_color(std::vector<Formula> given, ColorFormula color) {
+        reader_.expect('.', "the color of a pigment");
+        if (reader_.take("gray") || reader_.take("grey"))
+            return [given = std::move(given), color = std::move(color)](std::span<const double> x) {
+                const vec3 rgb = color(point(given, x)).rgb;
+                return double(0.297f * rgb.x + 0.589f * rgb.y + 0.114f * rgb.z);
+            };
+        const size_t component = parse_component();
+        return [given = std::move(given), color = std::move(color),
+                component](std::span<const double> x) {
+            const Color c = color(point(given, x));
+            const float all[5] = {c.rgb.x, c.rgb.y, c.rgb.z, c.filter, c.transmit};
+            return double(all[component]);
+        };
+    }
+
+    static dvec3 point(const std::vector<Formula>& given, std::span<const double> x) {
+        dvec3 at(0);
+        for (size_t i = 0; i < 3 && i < given.size(); ++i)
+            at[int(i)] = given[i](x);
+        return at;
     }
 
     Reader& reader_;
@@ -289,6 +319,31 @@ static void parse_internal(Reader& reader, Function& function) {
     };
 }
 
+/// Reads the { … } of `pattern` or `pigment`, whose word is `what`.
+static void parse_pattern_function(Reader& reader, const Token& what, Function& function) {
+    reader.expect('{', what.name->text);
+    const bool is_pattern = what.is("pattern");
+    const Pigment pigment =
+        parse_pigment_parts(reader, is_pattern ? Pigment{} : reader.defaults.pigment, '}');
+    reader.expect('}', what.name->text);
+    if (!pigment.notes.empty() || (is_pattern && !pigment.pattern)) {
+        function.refused =
+            fmt::format("the function is a {} that Overcast does not compute", what.name->text);
+        return;
+    }
+    if (!is_pattern) {
+        function.color = color_function(pigment);
+        return;
+    }
+    function.formula = [pattern = pigment.pattern,
+                        back = glm::inverse(pigment.placed)](std::span<const double> x) {
+        dvec4 at(0, 0, 0, 1);
+        for (size_t i = 0; i < 3 && i < x.size(); ++i)
+            at[int(i)] = x[i];
+        return evaluate(pattern->pattern, dvec3(back * at)).value;
+    };
+}
+
 Function parse_function(Reader& reader) {
     Function function;
     const std::vector<std::string> parameters = parse_parameters(reader);
@@ -306,12 +361,9 @@ Function parse_function(Reader& reader) {
         function.spline = parse_spline(reader);
     else if (first.is("internal"))
         parse_internal(reader, function);
-    else if (first.is("pigment") || first.is("pattern")) {
-        function.refused = fmt::format("the function is {} {{ }}, which Overcast does not compute",
-                                       first.name->text);
-        skip_block(reader); // takes the function's } too
-        return function;
-    } else {
+    else if (reader.take("pigment") || reader.take("pattern"))
+        parse_pattern_function(reader, first, function);
+    else {
         FormulaParser parser(reader, parameters);
         function.formula = parser.whole();
         function.depth = parser.depth();
@@ -326,12 +378,16 @@ Number call(Reader& reader, const Token& name, const Function& function,
     if (!function.refused.empty())
         reader.fail(name.place, fmt::format("{} cannot be called: {}", ovc::quoted(name.name->text),
                                             function.refused));
-    assert(function.formula || function.spline || function.transform);
+    assert(function.formula || function.color || function.spline || function.transform);
     if (function.formula)
         return Number::of(function.formula(arguments));
     if (function.spline)
         return at(*function.spline, arguments.empty() ? 0 : arguments[0]);
     const auto argument = [&](size_t i) { return i < arguments.size() ? arguments[i] : 0; };
+    if (function.color) {
+        const Color c = function.color({argument(0), argument(1), argument(2)});
+        return {{c.rgb.x, c.rgb.y, c.rgb.z, c.filter, c.transmit}, 5, true};
+    }
     return Number::of(dvec3(*function.transform * dvec4(argument(0), argument(1), argument(2), 1)));
 }
 

@@ -3,6 +3,8 @@
 // against values that povray 3.7.0 prints.
 #include "importers/pov/values/internal.h"
 
+#include "core/texture/noise.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -53,6 +55,14 @@ Internal find_internal(int number) {
     case 70: // f_torus
         return {[](Arguments a) { return std::hypot(std::hypot(a[0], a[2]) - a[3], a[1]) - a[4]; },
                 5};
+    case 76: // f_noise3d
+        return {[](Arguments a) { return noise({a[0], a[1], a[2]}); }, 3};
+    case 78: // f_noise_generator
+        return {[](Arguments a) {
+                    return noise({a[0], a[1], a[2]},
+                                 a[3] < 1.5 ? NoiseKind::Original : NoiseKind::Corrected);
+                },
+                4};
     default:
         return {};
     }

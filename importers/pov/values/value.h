@@ -44,14 +44,7 @@ struct Note {
 /// The reader owns the notes (Reader::note), since every copy of a look has the same ones.
 using Notes = std::vector<const Note*>;
 
-/// A color and its transparency: it lets through light x color x filter + light x transmit.
-struct Color {
-    vec3 rgb{0};
-    float filter = 0;
-    float transmit = 0;
-
-    float opacity() const { return 1 - filter - transmit; }
-};
+using Color = TransparentColor;
 
 /// The holes of an image_map and the color of what is there.
 struct Holes {
@@ -64,13 +57,18 @@ struct Holes {
 /// forget many pigments, so the last copy frees them.
 using HolesPtr = std::shared_ptr<const Holes>;
 
-/// A color, the average of a pattern, or a checker of two of them.
+/// A pattern with the entries of its map or list. The copies of a pigment or texture share it, as
+/// they share holes.
+struct PatternMap;
+using PatternPtr = std::shared_ptr<const PatternMap>;
+
+/// A color, or a pattern of pigments.
 struct Pigment {
-    Color color;
-    HolesPtr holes;             // of an image_map; null: none
-    bool uv_mapping = false;    // the image_map lies on texture coordinates, not on x and y
-    std::optional<Color> other; // of a checker
-    dmat4 placed{1};            // from its space to that of the object's parent, or to uv
+    Color color;             // with a pattern: about its average
+    PatternPtr pattern;      // null: none
+    HolesPtr holes;          // of an image_map; null: none
+    bool uv_mapping = false; // the image_map lies on texture coordinates, not on x and y
+    dmat4 placed{1};         // from its space to that of the object's parent, or to uv
     Notes notes;
 };
 
@@ -87,11 +85,42 @@ struct Surface {
     Notes notes;
 };
 
-/// A texture whose layers are combined into one.
+/// A normal { }, whose pattern tilts normals. Without a pattern it tilts none.
+struct Normal {
+    Pigment pattern; // its colors do not matter
+    Bump::Kind kind = Bump::Kind::Height;
+    double amount = 0.5;
+    double accuracy = 0.02;
+};
+
+struct Texture;
+/// Copies of a texture share the layers below it, which do not change any more.
+using TexturePtr = std::shared_ptr<const Texture>;
+
+/// A texture, with the layer below it where it lies on one.
 struct Texture {
     Pigment pigment;
+    Normal normal;
     Surface surface;
+    /// Its pattern, unless null, mixes the textures of its stops; pigment and surface are then
+    /// those of the first of them.
+    Pigment mix;
+    TexturePtr under;
     Notes notes; // of the whole texture
+};
+
+/// An entry of a map or list: a pigment or, in a map of textures, a texture.
+struct MapStop {
+    double at = 0;
+    Pigment pigment;
+    TexturePtr texture; // null: none
+
+    const Color& average() const { return texture ? texture->pigment.color : pigment.color; }
+};
+
+struct PatternMap {
+    Pattern pattern;
+    std::vector<MapStop> stops; // at least one, in ascending order but for Average
 };
 
 struct Interior {
@@ -104,9 +133,9 @@ struct Material {
     std::optional<Interior> interior;
 };
 
-/// A color_map or any other map, of which only the average over [0, 1] is kept.
+/// A color_map, pigment_map or texture_map.
 struct ColorMap {
-    Color average;
+    std::vector<MapStop> stops;
 };
 
 /// The pigments of a sky_sphere, the lowest first.
@@ -114,7 +143,7 @@ struct SkySphere {
     std::vector<Pigment> pigments;
 };
 
-/// A declared value that Overcast does not use: a media, a fog, a normal.
+/// A declared value that Overcast does not use: a media, a fog.
 struct Opaque {
     std::string kind;
 };
@@ -165,10 +194,14 @@ struct Spline {
 /// does not compute. Arguments that are missing count as 0.
 using Formula = SharedFunction<double(std::span<const double>)>;
 
-/// Exactly one of formula, transform, spline and refused is set.
+/// The color of a pigment at a point.
+using ColorFormula = SharedFunction<Color(const dvec3&)>;
+
+/// Exactly one of formula, color, transform, spline and refused is set.
 struct Function {
     size_t parameters = 3;
     Formula formula;
+    ColorFormula color;
     std::optional<dmat4> transform;
     std::optional<Spline> spline;
     uint32_t depth = 1;  // of nested closures
@@ -178,7 +211,7 @@ struct Function {
 
 /// The value of a variable or of an array's item, which owns it. Macros belong to the reader.
 struct Value : std::variant<std::monostate, Number, std::string, ObjectPtr, Texture, Pigment,
-                            Surface, Interior, Material, ColorMap, SkySphere, dmat4, Array,
+                            Normal, Surface, Interior, Material, ColorMap, SkySphere, dmat4, Array,
                             const Macro*, Function, Spline, CameraValue, DataFile, Opaque> {
     using variant::variant;
     using variant::operator=;

@@ -293,6 +293,22 @@ void Reader::warn(const std::string& kind, const Place& at, const std::string& s
                     shown.empty() ? "" : "\n", shown));
 }
 
+void Reader::omit(const std::string& kind, const Place& at, const std::string& sentence) {
+    if (strict)
+        fail(at, sentence + ", which --strict makes an error");
+    warn(kind, at, sentence);
+    Omission& omission = omissions_[kind];
+    omission.sentence = sentence;
+    ++omission.count;
+}
+
+std::vector<Omission> Reader::omissions() const {
+    std::vector<Omission> all;
+    for (const auto& [kind, omission] : omissions_)
+        all.push_back(omission);
+    return all;
+}
+
 void Reader::call(const Token& at, const Macro& macro) {
     const Deeper deeper(*this);
     if (frames_.size() >= limits.nesting)

@@ -117,6 +117,11 @@ public:
     const Note* note(const std::string& kind, const Place& at, const std::string& sentence);
     /// Logs a warning, once for each `kind`.
     void warn(const std::string& kind, const Place& at, const std::string& sentence);
+    /// Warns of a thing that is not drawn as its author meant, and counts it. Throws ParseError
+    /// instead where the reader is strict.
+    void omit(const std::string& kind, const Place& at, const std::string& sentence);
+    std::vector<Omission> omissions() const;
+    bool strict = false;
 
     /// Returns the innermost variable of this name, or null. The scope of the variable owns it.
     Slot* find(const Name* name) const;
@@ -136,11 +141,16 @@ public:
     bool version_given = false; // without a #version povray takes the scene for an older one
     /// Returns whether colors are linear light instead of code values for a screen.
     bool has_linear_colors() const { return version_given && version >= 3.7; }
+    /// Returns the noise of patterns that do not name one.
+    NoiseKind noise_kind() const {
+        return noise.value_or(version < 3.5 ? NoiseKind::Original : NoiseKind::Corrected);
+    }
     double gamma = 1; // assumed_gamma, to which srgb colors are converted
     ImageSize picture{640, 480};
     Moment moment;
-    bool moves = false; // the scene has asked for the moment
-    Texture defaults;   // of #default
+    bool moves = false;             // the scene has asked for the moment
+    Texture defaults;               // of #default
+    std::optional<NoiseKind> noise; // noise_generator of global_settings
     /// The objects that the scene asked about with trace().
     std::map<ObjectPtr, std::unique_ptr<const TraceTarget>> targets;
     std::map<std::string, std::unique_ptr<Font>> fonts; // by name; shapes point to their letters
@@ -257,6 +267,7 @@ private:
     std::set<Note> notes_;
     std::vector<Token> back_;
     std::set<std::string> warned_;
+    std::map<std::string, Omission> omissions_;  // by kind
     std::map<std::string, std::string> written_; // files of #fopen, by name
     uint64_t written_bytes_ = 0;
     uint64_t available_;     // bytes of memory when reading began

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/texture/noise.h"
+
+#include "core/texture/noise_values.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace ovc {
+
+namespace {
+
+constexpr uint32_t kPeriod = 4096; // of the lattice, in each direction
+constexpr int64_t kShift = 10000;  // from a coordinate to its place in the period
+
+/// A shuffle of the numbers below kPeriod, by the random numbers of POV-Ray's rand() from 0 on.
+constexpr std::array<uint16_t, kPeriod> shuffled() {
+    std::array<uint16_t, kPeriod> numbers{};
+    for (uint32_t i = 0; i < kPeriod; ++i)
+        numbers[i] = uint16_t(i);
+    uint32_t state = 0;
+    for (uint32_t i = kPeriod; i-- > 0;) {
+        state = state * 1812433253u + 12345u;
+        std::swap(numbers[i], numbers[(state >> 16) % kPeriod]);
+    }
+    return numbers;
+}
+
+constexpr std::array<uint16_t, kPeriod> kShuffled = shuffled();
+
+uint32_t place_of(int64_t coordinate) {
+    return uint32_t(coordinate + kShift) % kPeriod;
+}
+
+/// Returns 3 t^2 - 2 t^3.
+double smooth_step(double t) {
+    return t * t * (3 - 2 * t);
+}
+
+/// The corners of the lattice's cell around a point.
+struct Cell {
+    explicit Cell(const dvec3& at) {
+        // Beyond this doubles have no fraction left, and integers no room.
+        const dvec3 near = glm::clamp(at, -1e15, 1e15);
+        const dvec3 low = glm::floor(near);
+        const dvec3 offset = is_finite(near) ? near - low : dvec3(0);
+        const int64_t x = int64_t(is_finite(near) ? low.x : 0);
+        const int64_t y = int64_t(is_finite(near) ? low.y : 0);
+        const int64_t z = int64_t(is_finite(near) ? low.z : 0);
+        for (int i = 0; i < 8; ++i) {
+            const dvec3 corner(i & 1, i >> 1 & 1, i >> 2);
+            from_corner[i] = offset - corner;
+            const dvec3 t = dvec3(1) - glm::abs(from_corner[i]);
+            weight[i] = smooth_step(t.x) * smooth_step(t.y) * smooth_step(t.z);
+            kind[i] = lattice_number(x + (i & 1), y + (i >> 1 & 1), z + (i >> 2)) % 256;
+        }
+    }
+
+    /// Returns the noise whose values begin at `first` in kNoiseValues, of mean 0.
+    double noise(size_t first) const {
+        double sum = 0;
+        for (int i = 0; i < 8; ++i) {
+            const double* v = kNoiseValues.data() + kind[i] + first;
+            sum += weight[i] * (0.5 * v[0] + glm::dot(dvec3(v[1], v[2], v[3]), from_corner[i]));
+        }
+        return sum;
+    }
+
+    dvec3 from_corner[8];
+    double weight[8];
+    uint32_t kind[8];
+};
+
+/// Corrected is (noise + kCorrection) / kRange, as measured.
+constexpr double kCorrection = 1.05242, kRange = 2.041417;
+
+} // namespace
+
+uint32_t lattice_number(int64_t x, int64_t y, int64_t z) {
+    return kShuffled[kShuffled[kShuffled[place_of(x)] ^ place_of(y)] ^ place_of(z)];
+}
+
+double noise(const dvec3& at, NoiseKind kind) {
+    const double value = Cell(at).noise(0);
+    return std::clamp(kind == NoiseKind::Original ? value + 0.5 : (value + kCorrection) / kRange,
+                      0.0, 1.0);
+}
+
+dvec3 vector_noise(const dvec3& at) {
+    const Cell cell(at);
+    return {cell.noise(0), cell.noise(4), cell.noise(8)};
+}
+
+dvec3 turbulence(const dvec3& at, const Octaves& octaves) {
+    dvec3 sum(0), where = at;
+    double share = 1;
+    for (uint64_t i = 0; i < octaves.count; ++i) {
+        sum += share * vector_noise(where);
+        where *= octaves.lambda;
+        share *= octaves.omega;
+    }
+    return sum;
+}
+
+double scalar_turbulence(const dvec3& at, const Octaves& octaves, NoiseKind kind) {
+    const bool corrected = kind == NoiseKind::Corrected;
+    double sum = 0, share = 1;
+    dvec3 where = at;
+    for (uint64_t i = 0; i < octaves.count; ++i) {
+        double value = noise(where, kind);
+        if (corrected) {
+            value = 2 * value - 0.5;
+            value = i == 0 ? std::clamp(value, 0.0, 1.0) : value; // only the first, as measured
+        }
+        sum += share * value;
+        where *= octaves.lambda;
+        share *= octaves.omega;
+    }
+    return sum;
+}
+
+} // namespace ovc

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// Evaluates patterns and textures at points.
+#pragma once
+
+#include "core/texture/texture.h"
+
+#include <span>
+
+namespace ovc {
+
+/// A place where a pattern has been evaluated.
+struct PatternPlace {
+    double value; // of the pattern
+    dvec3 at;     // after its steps and its turbulence: textures of its stops go on from there
+};
+
+/// Returns the pattern's value at a point of the texture's space. It is a number for any point.
+PatternPlace evaluate(const Pattern& pattern, const dvec3& at);
+
+/// Returns the color of textures[number] at a point of its space.
+TransparentColor color_at(std::span<const Texture> textures, uint32_t number, const dvec3& at);
+
+/// Two neighbouring stops, by their indices, and the share of the second.
+struct Between {
+    size_t first, second;
+    double share;
+};
+
+/// Returns where `value` lies among `count` > 0 stops, whose values are at(0) <= at(1) <= ….
+/// discrete: the value is a stop's number instead.
+template <class At>
+Between between(size_t count, const At& at, double value, bool discrete) {
+    if (discrete) {
+        const size_t i = size_t(value) % count;
+        return {i, i, 0};
+    }
+    size_t next = 0;
+    while (next < count && at(next) <= value)
+        ++next;
+    if (next == 0 || next == count)
+        return {next == 0 ? 0 : count - 1, next == 0 ? 0 : count - 1, 0};
+    return {next - 1, next, (value - at(next - 1)) / (at(next) - at(next - 1))};
+}
+
+/// Returns whether the values of the pattern are whole numbers, which choose a stop.
+inline bool is_discrete(Pattern::Kind kind) {
+    return kind >= Pattern::Kind::Brick;
+}
+
+} // namespace ovc

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/texture/pattern.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace ovc {
+
+namespace {
+
+using Kind = Pattern::Kind;
+using Wave = Pattern::Wave;
+
+struct AskedValues {
+    const char* name;
+    Pattern pattern;
+    std::array<double, 4> values;
+};
+
+const dvec3 kPoints[] = {
+    {0.3, 0.7, 0.15}, {-1.7, 2.2, 0.55}, {0.61, -0.42, -5.9}, {-0.2, 0.35, 0.45}};
+
+/// The values are those that povray 3.7.0.10 prints for function { pattern { NAME } }.
+const AskedValues kAsked[] = {
+    {"bozo", Pattern{.kind = Kind::Bozo}, {0.406873122, 0.686011099, 0.473528033, 0.40287015}},
+    {"bozo noise_generator 1",
+     Pattern{.kind = Kind::Bozo, .noise = NoiseKind::Original},
+     {0.27817771, 0.848014721, 0.414248178, 0.270005974}},
+    {"bozo turbulence <0.1,0.2,0.3> octaves 3 lambda 2.5 omega 0.7",
+     Pattern{.kind = Kind::Bozo, .turbulence = {0.1, 0.2, 0.3}, .octaves = {2.5, 0.7, 3}},
+     {0.404993447, 0.668144634, 0.465063903, 0.221206498}},
+    {"agate",
+     Pattern{.kind = Kind::Agate, .parameters = {1}},
+     {0.947679857, 0.988477808, 0.530465753, 0.104932622}},
+    {"marble turbulence 0.3",
+     Pattern{.kind = Kind::Marble, .wave = Wave::Triangular, .turbulence = dvec3(0.3)},
+     {0.860645023, 0.622748405, 0.101299557, 0.144935254}},
+    {"wood turbulence 0.3",
+     Pattern{.kind = Kind::Wood, .wave = Wave::Triangular, .turbulence = dvec3(0.3)},
+     {0.92428169, 0.820576533, 0.801506244, 0.431426124}},
+    {"granite",
+     Pattern{.kind = Kind::Granite},
+     {0.596421668, 0.610629852, 0.157499984, 0.0986198835}},
+    {"wrinkles",
+     Pattern{.kind = Kind::Wrinkles},
+     {0.456395033, 0.671531365, 0.574579092, 0.460947607}},
+    {"dents", Pattern{.kind = Kind::Dents}, {0.0673561112, 0.322844525, 0.106178622, 0.0653875809}},
+    {"leopard",
+     Pattern{.kind = Kind::Leopard},
+     {0.131811602, 0.0128081145, 0.0322781554, 0.0372739669}},
+    {"onion", Pattern{.kind = Kind::Onion}, {0.776208735, 0.834166544, 0.946301371, 0.604152299}},
+    {"radial frequency 3 phase 0.3",
+     Pattern{.kind = Kind::Radial, .frequency = 3, .phase = 0.3},
+     {0.0785945854, 0.949389343, 0.000769779601, 0.350292604}},
+    {"spherical scallop_wave",
+     Pattern{.kind = Kind::Spherical, .wave = Wave::Scallop},
+     {0.646555843, 0, 0, 0.946944638}},
+    {"cylindrical sine_wave",
+     Pattern{.kind = Kind::Cylindrical, .wave = Wave::Sine},
+     {0.0702864019, 0.5, 0.5, 0.476267559}},
+    {"planar cubic_wave",
+     Pattern{.kind = Kind::Planar, .wave = Wave::Cubic},
+     {0.216, 0, 0.618976, 0.71825}},
+    {"boxed poly_wave 3",
+     Pattern{.kind = Kind::Boxed, .wave = Wave::Power, .exponent = 3},
+     {0.027, 0, 0, 0.166375}},
+    {"spiral1 3",
+     Pattern{.kind = Kind::Spiral1, .parameters = {3}, .wave = Wave::Triangular},
+     {0.436471446, 0.288712851, 0.605489599, 0.798066204}},
+    {"brick", Pattern{.kind = Kind::Brick, .parameters = {8, 3, 4.5, 0.5}}, {1, 1, 0, 0}},
+    {"hexagon", Pattern{.kind = Kind::Hexagon}, {0, 2, 1, 0}},
+    {"cubic", Pattern{.kind = Kind::Cubic}, {1, 1, 5, 2}},
+    {"checker", Pattern{.kind = Kind::Checker}, {0, 0, 1, 1}},
+};
+
+} // namespace
+
+TEST(Pattern, HasTheValuesThatPovrayPrints) {
+    // POV-Ray wraps values at 1.00001, once more for marble than we do.
+    for (const AskedValues& asked : kAsked)
+        for (size_t i = 0; i < 4; ++i)
+            EXPECT_NEAR(evaluate(asked.pattern, kPoints[i]).value, asked.values[i], 3e-5)
+                << asked.name << " at point " << i;
+}
+
+TEST(Pattern, StepsComeBeforeTurbulence) {
+    Pattern moved{.kind = Kind::Bozo, .turbulence = dvec3(0.4)};
+    TextureStep half;
+    half.rows = {dvec4(0.5, 0, 0, 0), dvec4(0, 0.5, 0, 0), dvec4(0, 0, 0.5, 1)};
+    const double expected = evaluate(moved, dvec3(1, 2, 4)).value;
+    moved.steps = {half};
+    EXPECT_EQ(evaluate(moved, dvec3(2, 4, 6)).value, expected);
+}
+
+TEST(Pattern, IsANumberEverywhere) {
+    const double far = std::numeric_limits<double>::max();
+    for (uint64_t kind = 0; kind <= uint64_t(Kind::Hexagon); ++kind) {
+        Pattern pattern{.kind = Kind(kind), .parameters = {1, 1, 1, 0.5}};
+        for (const double turbulence : {0.0, 1.0})
+            for (const double x : {0.0, far, -far, double(INFINITY), double(NAN)}) {
+                pattern.turbulence = dvec3(turbulence);
+                const double value = evaluate(pattern, {x, 1, x}).value;
+                EXPECT_GE(value, 0) << kind;
+                EXPECT_LE(value, 6) << kind;
+            }
+    }
+}
+
+TEST(Texture, MixesTheStopsOfItsMap) {
+    const Pattern along_x{.kind = Kind::Gradient, .parameters = {1, 0, 0}};
+    const Texture map{along_x,
+                      {{0.2, {{1, 0, 0}, 0.5f, 0.2f}}, {0.5, {{0, 1, 0}}}, {0.5, {{0, 0, 1}}}}};
+    const std::vector<Texture> textures{map, {along_x, {{0, {}, 0}, {0, {vec3(8)}}}}};
+    EXPECT_EQ(color_at(textures, 0, {0.1, 0, 0}), map.stops[0].color);
+    EXPECT_EQ(color_at(textures, 0, {0.75, 0, 0}), map.stops[2].color);
+    const TransparentColor middle = color_at(textures, 0, {0.35, 0, 0});
+    EXPECT_NEAR(middle.rgb.x, 0.5, 1e-6);
+    EXPECT_NEAR(middle.rgb.y, 0.5, 1e-6);
+    EXPECT_NEAR(middle.filter, 0.25, 1e-6);
+    EXPECT_NEAR(middle.transmit, 0.1, 1e-6);
+    EXPECT_EQ(color_at(textures, 1, {0.75, 0, 0}).rgb, vec3(8)); // the last of equal stops
+}
+
+TEST(Texture, AveragesByWeight) {
+    const std::vector<Texture> textures{
+        {{.kind = Kind::Average}, {{1, {{1, 0, 0}}}, {3, {{0, 1, 0}}}}}};
+    EXPECT_EQ(color_at(textures, 0, dvec3(0)).rgb, vec3(0.25f, 0.75f, 0));
+}
+
+} // namespace ovc

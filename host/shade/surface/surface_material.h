@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+// The material of a surface at a point: evaluates its texture, its layers and its mix.
+#pragma once
+
+#include "host/shade/shade.h"
+
+namespace ovc {
+
+/// Sets what the surface takes from Scene::materials[material], or from a plain one where there is
+/// no such material: material, color, opacity, through, coats. at: the point in the world.
+void take_material(const Scene& scene, uint32_t material, const dvec3& at, SurfacePoint& surface);
+
+} // namespace ovc

@@ -1,0 +1,493 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "importers/pov/parse/pattern.h"
+
+#include "core/texture/pattern.h"
+#include "importers/file/text.h"
+#include "importers/pov/parse/texture.h"
+#include "importers/pov/values/function.h"
+#include "importers/pov/words/block.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <unordered_map>
+
+namespace ovc::pov {
+
+namespace {
+
+using Kind = Pattern::Kind;
+using Wave = Pattern::Wave;
+
+struct KindAndWave {
+    Kind kind;
+    Wave wave = Wave::Ramp;
+};
+
+const std::unordered_map<std::string_view, KindAndWave> kPatterns = {
+    {"agate", {Kind::Agate}},
+    {"average", {Kind::Average}},
+    {"boxed", {Kind::Boxed}},
+    {"bozo", {Kind::Bozo}},
+    {"bumps", {Kind::Bozo}},
+    {"cylindrical", {Kind::Cylindrical}},
+    {"dents", {Kind::Dents}},
+    {"gradient", {Kind::Gradient}},
+    {"granite", {Kind::Granite}},
+    {"leopard", {Kind::Leopard}},
+    {"marble", {Kind::Marble, Wave::Triangular}},
+    {"onion", {Kind::Onion}},
+    {"planar", {Kind::Planar}},
+    {"radial", {Kind::Radial}},
+    {"spherical", {Kind::Spherical}},
+    {"spiral1", {Kind::Spiral1, Wave::Triangular}},
+    {"spotted", {Kind::Bozo}},
+    {"wood", {Kind::Wood, Wave::Triangular}},
+    {"wrinkles", {Kind::Wrinkles}}};
+
+const std::unordered_map<std::string_view, Kind> kLists = {{"brick", Kind::Brick},
+                                                           {"checker", Kind::Checker},
+                                                           {"cubic", Kind::Cubic},
+                                                           {"hexagon", Kind::Hexagon}};
+
+const std::unordered_map<std::string_view, Wave> kWaves = {
+    {"ramp_wave", Wave::Ramp},   {"triangle_wave", Wave::Triangular},
+    {"sine_wave", Wave::Sine},   {"scallop_wave", Wave::Scallop},
+    {"cubic_wave", Wave::Cubic}, {"poly_wave", Wave::Power}};
+
+template <size_t N>
+bool is_one_of(const Token& token, const std::string_view (&words)[N]) {
+    return token.kind == TokenKind::Name &&
+           std::find(std::begin(words), std::end(words), token.name->text) != std::end(words);
+}
+
+/// Returns whether the word is a pattern that Overcast draws by its average color.
+bool is_other_pattern(const Token& token) {
+    static constexpr std::string_view kWords[] = {
+        "aoi",      "cells",        "crackle",         "facets",
+        "julia",    "mandel",       "magnet",          "object",
+        "pavement", "quilted",      "pigment_pattern", "potential",
+        "ripples",  "slope",        "spiral2",         "square",
+        "tiles",    "tiling",       "tiling_list",     "triangular",
+        "waves",    "density_file", "function",        "image_pattern"};
+    return is_one_of(token, kWords);
+}
+
+bool is_map(const Token& token) {
+    static constexpr std::string_view kWords[] = {"color_map", "colour_map", "pigment_map",
+                                                  "texture_map"};
+    return is_one_of(token, kWords);
+}
+
+MapStop stop(double at, const vec3& rgb) {
+    MapStop made;
+    made.at = at;
+    made.pigment.color.rgb = rgb;
+    return made;
+}
+
+/// Returns the colors that povray gives a pattern without a map or list.
+std::vector<MapStop> default_stops(const Token* word, Kind kind) {
+    switch (kind) {
+    case Kind::Agate:
+        return {stop(0, vec3(1)), stop(0.5, {0.95f, 0.75f, 0.5f}), stop(0.6, {1, 0.7f, 0.4f}),
+                stop(1, {0.6f, 0.3f, 0})};
+    case Kind::Bozo:
+        if (!word || !word->is("bozo"))
+            break;
+        return {stop(0.4, vec3(1)),   stop(0.4, {0, 1, 0}), stop(0.6, {0, 1, 0}),
+                stop(0.6, {0, 0, 1}), stop(0.8, {0, 0, 1}), stop(0.8, {1, 0, 0})};
+    case Kind::Brick:
+        return {stop(0, vec3(0.5f)), stop(1, {0.6f, 0.15f, 0.15f})};
+    case Kind::Checker:
+        return {stop(0, {0, 0, 1}), stop(1, {0, 1, 0})};
+    case Kind::Cubic:
+        return {stop(0, {1, 0, 0}), stop(1, {0, 1, 0}), stop(2, {0, 0, 1}),
+                stop(3, {1, 1, 0}), stop(4, {0, 1, 1}), stop(5, {1, 0, 1})};
+    case Kind::Hexagon:
+        return {stop(0, {0, 0, 1}), stop(1, {0, 1, 0}), stop(2, {1, 0, 0})};
+    case Kind::Marble:
+        return {stop(0, {0.9f, 0.8f, 0.8f}), stop(0.9, {0.9f, 0.08f, 0.08f}), stop(0.9, vec3(0))};
+    case Kind::Radial:
+        return {stop(0, {0, 1, 1}), stop(0.333, {1, 1, 0}), stop(0.666, {1, 0, 1}),
+                stop(1, {0, 1, 1})};
+    case Kind::Wood:
+        return {stop(0.6, {0.666f, 0.312f, 0.2f}), stop(0.6, {0.4f, 0.133f, 0.066f})};
+    default:
+        break;
+    }
+    return {stop(0, vec3(0)), stop(1, vec3(1))};
+}
+
+/// Reads a pigment or texture of a list or map. `end` ends an entry of a map; it is 0 for a list.
+MapStop parse_entry(Reader& reader, MapOf of, char end) {
+    MapStop made;
+    const auto take = [&](const Texture& texture) {
+        made.texture = std::make_shared<const Texture>(texture);
+    };
+    if (of == MapOf::Textures && end != 0)
+        take(parse_texture_parts(reader, reader.defaults, end));
+    else if (reader.take("texture"))
+        take(parse_texture(reader));
+    else if (const auto texture = take_named<Texture>(reader); texture)
+        take(*texture);
+    else if (reader.take("pigment"))
+        made.pigment = parse_pigment(reader, reader.defaults.pigment);
+    else if (const auto pigment = take_named_if<Pigment>(reader); pigment && end == 0)
+        made.pigment = *pigment;
+    else if (end == 0)
+        made.pigment.color = parse_color(reader);
+    else
+        made.pigment = parse_pigment_parts(reader, pigment.value_or(reader.defaults.pigment), end);
+    return made;
+}
+
+/// Returns whether a further entry of a list follows, and takes the comma before it.
+bool list_goes_on(Reader& reader) {
+    if (reader.take(','))
+        return true;
+    const Token next = reader.peek();
+    return starts_color(next) || next.is("pigment") || next.is("texture") ||
+           named<Number>(reader, next);
+}
+
+bool starts_entry(const Reader& reader, const Token& token) {
+    return starts_number(reader, token) || token.is("pigment") || token.is("texture") ||
+           named<Pigment>(reader, token) || named<Texture>(reader, token);
+}
+
+/// Reads `0.3 color …`, `0.3 0.5 color … color …` or a pigment or texture, behind the [.
+void parse_stop(Reader& reader, MapOf of, std::vector<MapStop>& stops) {
+    // Entries of `average` may come without a number.
+    const bool has_number = starts_number(reader, reader.peek()) && !starts_color(reader.peek());
+    const double at = has_number ? parse_float(reader) : 1;
+    reader.take_comma();
+    const Token token = reader.peek();
+    const auto add_color = [&](double where, const Color& color) {
+        stops.push_back(stop(where, vec3(0)));
+        stops.back().pigment.color = color;
+    };
+    if (token.kind == TokenKind::Number || token.is('(') || token.is('<')) {
+        const Number n = parse_number(reader);
+        reader.take_comma();
+        if (reader.peek().is(']')) {
+            add_color(at, color_of(resized(reader, n, 5)));
+        } else {
+            add_color(at, parse_color(reader));
+            reader.take_comma();
+            add_color(n.v[0], parse_color(reader));
+        }
+        return;
+    }
+    if (starts_color(token)) {
+        add_color(at, parse_color(reader));
+        return;
+    }
+    stops.push_back(parse_entry(reader, of, ']'));
+    stops.back().at = at;
+}
+
+} // namespace
+
+ColorMap parse_map(Reader& reader, MapOf of) {
+    const Deeper deeper(reader);
+    reader.expect('{', "a map");
+    ColorMap made;
+    while (!reader.take('}')) {
+        if (const auto map = take_named_if<ColorMap>(reader)) {
+            reader.expect('}', "the name of a map");
+            return *map;
+        }
+        reader.expect('[', "a map's brace");
+        parse_stop(reader, of, made.stops);
+        // More may follow the color, such as a second one. It is skipped.
+        while (!reader.peek().is(']'))
+            if (const Token rest = reader.next(); rest.kind == TokenKind::End)
+                reader.fail(rest.place, "found no ']' in a map");
+        reader.expect(']', "an entry of a map");
+    }
+    return made;
+}
+
+Color average_of(const std::vector<MapStop>& stops) {
+    std::vector<MapStop> all = stops;
+    if (all.empty())
+        return {vec3(0.5f)};
+    std::stable_sort(all.begin(), all.end(),
+                     [](const MapStop& a, const MapStop& b) { return a.at < b.at; });
+    all.insert(all.begin(), all.front());
+    all.front().at = std::min(0.0, all.front().at);
+    all.push_back(all.back());
+    all.back().at = std::max(1.0, all.back().at);
+    Color sum;
+    double weights = 0;
+    for (size_t i = 0; i + 1 < all.size(); ++i) {
+        const double width = std::clamp(all[i + 1].at, 0.0, 1.0) - std::clamp(all[i].at, 0.0, 1.0);
+        weights += width;
+        for (const MapStop* end : {&all[i], &all[i + 1]}) {
+            const Color& color = end->average();
+            sum.rgb += float(width / 2) * color.rgb;
+            sum.filter += float(width / 2) * color.filter;
+            sum.transmit += float(width / 2) * color.transmit;
+        }
+    }
+    return weights > 0 ? sum : all.front().average();
+}
+
+PatternParts::PatternParts(Reader& reader, Pigment& pigment, MapOf of)
+    : reader_(reader), pigment_(pigment), of_(of) {
+    restart();
+}
+
+void PatternParts::restart() {
+    forget();
+    changed_ = false;
+    if (!pigment_.pattern)
+        return;
+    chosen_ = true;
+    pattern_ = pigment_.pattern->pattern;
+    stops_ = pigment_.pattern->stops;
+}
+
+bool PatternParts::is_pattern(const Token& token) {
+    return token.kind == TokenKind::Name &&
+           (kPatterns.contains(token.name->text) || kLists.contains(token.name->text));
+}
+
+void PatternParts::forget() {
+    chosen_ = refused_ = false;
+    changed_ = true;
+    stops_.clear();
+    pattern_ = {};
+    pattern_.noise = reader_.noise_kind();
+}
+
+void PatternParts::choose(Kind kind, Wave wave) {
+    chosen_ = changed_ = true;
+    refused_ = false;
+    pattern_.kind = kind;
+    pattern_.wave = wave;
+    pattern_.parameters = {};
+    pigment_.holes.reset();
+    pigment_.notes.clear();
+}
+
+void PatternParts::refuse(const Token& token) {
+    chosen_ = refused_ = changed_ = true;
+    pigment_.holes.reset();
+    const bool of_normal = of_ == MapOf::Normals;
+    pigment_.notes = {reader_.note(
+        (of_normal ? "normal " : "pattern ") + token.name->text, token.place,
+        fmt::format("the pattern {} {}", ovc::quoted(token.name->text),
+                    of_normal ? "of a normal is left out" : "is drawn by its average color"))};
+}
+
+void PatternParts::add_step(TextureStep step) {
+    TextureStep back;
+    const dmat4 inverse = glm::inverse(pigment_.placed);
+    for (int row = 0; row < 3; ++row)
+        for (int column = 0; column < 4; ++column)
+            back.rows[size_t(row)][column] = inverse[column][row];
+    pattern_.steps.insert(pattern_.steps.begin(), {step, back});
+    pigment_.placed = dmat4(1);
+}
+
+bool PatternParts::take() {
+    const Token token = reader_.peek();
+    if (token.kind != TokenKind::Name)
+        return false;
+    if (is_map(token)) {
+        reader_.next();
+        stops_ =
+            parse_map(reader_, token.is("texture_map") ? MapOf::Textures : MapOf::Pigments).stops;
+        changed_ = true;
+        return true;
+    }
+    return take_pattern(token) || take_list(token) || take_wave(token) || take_number(token);
+}
+
+bool PatternParts::take_pattern(const Token& token) {
+    if (is_other_pattern(token)) {
+        reader_.next();
+        refuse(token);
+        if (token.is("function"))
+            parse_function(reader_);
+        else if (token.is("object") || token.is("pigment_pattern"))
+            skip_braces(reader_, token.name->text);
+        else if (token.is("square") || token.is("tiles") || token.is("triangular"))
+            parse_list();
+        else
+            skip_arguments(reader_);
+        return true;
+    }
+    const auto found = kPatterns.find(token.name->text);
+    if (found == kPatterns.end())
+        return false;
+    reader_.next();
+    choose(found->second.kind, found->second.wave);
+    if (stops_.empty() && token.is("bozo"))
+        stops_ = default_stops(&token, Kind::Bozo);
+    parse_arguments(token);
+    return true;
+}
+
+void PatternParts::parse_arguments(const Token& token) {
+    if (token.is("gradient")) {
+        const dvec3 direction = parse_vector(reader_);
+        const double length = glm::length(direction);
+        for (int i = 0; i < 3; ++i)
+            pattern_.parameters[size_t(i)] = length > 0 ? direction[i] / length : 0;
+    } else if (token.is("spiral1")) {
+        pattern_.parameters[0] = parse_float(reader_);
+    }
+}
+
+bool PatternParts::take_list(const Token& token) {
+    const auto found = kLists.find(token.name->text);
+    if (found == kLists.end())
+        return false;
+    reader_.next();
+    choose(found->second, Wave::Ramp);
+    pigment_.placed = dmat4(1);
+    pattern_.steps.clear();
+    if (found->second == Kind::Brick)
+        pattern_.parameters = {8, 3, 4.5, 0.5};
+    if (of_ != MapOf::Normals)
+        parse_list();
+    else if (reader_.peek().is("normal")) {
+        refuse(token);
+        while (reader_.take("normal") || reader_.take(','))
+            if (reader_.peek().is('{'))
+                skip_braces(reader_, "normal");
+    }
+    return true;
+}
+
+void PatternParts::parse_list() {
+    std::vector<MapStop> list;
+    if (starts_entry(reader_, reader_.peek())) {
+        do {
+            list.push_back(parse_entry(reader_, of_, 0));
+            list.back().at = double(list.size() - 1);
+        } while (list_goes_on(reader_));
+    }
+    // The colors that are not given are the default ones.
+    const std::vector<MapStop> others = default_stops(nullptr, pattern_.kind);
+    for (size_t i = list.size(); i < others.size(); ++i)
+        list.push_back(others[i]);
+    stops_ = std::move(list);
+}
+
+bool PatternParts::take_wave(const Token& token) {
+    const auto found = kWaves.find(token.name->text);
+    if (found == kWaves.end())
+        return false;
+    reader_.next();
+    pattern_.wave = found->second;
+    pattern_.exponent = 1;
+    if (found->second == Wave::Power && starts_number(reader_, reader_.peek()))
+        pattern_.exponent = parse_float(reader_);
+    changed_ = true;
+    return true;
+}
+
+bool PatternParts::take_number(const Token& token) {
+    if (reader_.take("turbulence"))
+        pattern_.turbulence = parse_vector(reader_);
+    else if (reader_.take("octaves"))
+        pattern_.octaves.count =
+            uint64_t(std::clamp(parse_float(reader_), 1.0, double(kMaxOctaves)));
+    else if (reader_.take("lambda"))
+        pattern_.octaves.lambda = parse_float(reader_);
+    else if (reader_.take("omega"))
+        pattern_.octaves.omega = parse_float(reader_);
+    else if (reader_.take("frequency"))
+        pattern_.frequency = parse_float(reader_);
+    else if (reader_.take("phase"))
+        pattern_.phase = parse_float(reader_);
+    else if (reader_.take("agate_turb"))
+        agate_turb_ = parse_float(reader_);
+    else if (reader_.take("noise_generator"))
+        pattern_.noise = parse_int(reader_, 1, 3, "noise_generator") == 1 ? NoiseKind::Original
+                                                                          : NoiseKind::Corrected;
+    else if (reader_.take("brick_size")) {
+        const dvec3 size = parse_vector(reader_);
+        for (int i = 0; i < 3; ++i)
+            pattern_.parameters[size_t(i)] = size[i];
+    } else if (reader_.take("mortar"))
+        pattern_.parameters[3] = parse_float(reader_);
+    else if (token.is("warp")) {
+        reader_.next();
+        take_warp();
+    } else
+        return false;
+    changed_ = true;
+    return true;
+}
+
+void PatternParts::take_warp() {
+    reader_.expect('{', "warp");
+    TextureStep step;
+    const Token token = reader_.peek();
+    if (reader_.take("turbulence")) {
+        step.kind = TextureStep::Kind::Turbulence;
+        Octaves octaves;
+        step.rows[0] = dvec4(parse_vector(reader_), 0);
+        while (!reader_.take('}')) {
+            if (reader_.take("octaves"))
+                octaves.count =
+                    uint64_t(std::clamp(parse_float(reader_), 1.0, double(kMaxOctaves)));
+            else if (reader_.take("lambda"))
+                octaves.lambda = parse_float(reader_);
+            else if (reader_.take("omega"))
+                octaves.omega = parse_float(reader_);
+            else
+                reader_.fail_here("'}' or a part of a warp's turbulence");
+        }
+        step.rows[0].w = octaves.lambda;
+        step.rows[1] = dvec4(octaves.omega, double(octaves.count), 0, 0);
+        add_step(step);
+    } else if (reader_.take("repeat")) {
+        step.kind = TextureStep::Kind::Repeat;
+        step.rows[0] = dvec4(parse_vector(reader_), 0);
+        step.rows[1] = step.rows[2] = dvec4(0);
+        while (!reader_.take('}')) {
+            if (reader_.take("offset"))
+                step.rows[1] = dvec4(parse_vector(reader_), 0);
+            else if (reader_.take("flip"))
+                step.rows[2] = -dvec4(parse_vector(reader_), 0);
+            else
+                reader_.fail_here("'}' or a part of a warp's repeat");
+        }
+        add_step(step);
+    } else {
+        skip_block(reader_);
+        if (token.kind == TokenKind::Name)
+            pigment_.notes.push_back(reader_.note(
+                "warp", token.place, fmt::format("the warp {} is left out", token.name->text)));
+    }
+}
+
+void PatternParts::finish() {
+    if (!changed_ || (!chosen_ && !pigment_.pattern))
+        return;
+    pigment_.pattern.reset();
+    if (!chosen_)
+        return;
+    pigment_.color = average_of(stops_);
+    if (refused_)
+        return;
+    if (pattern_.kind == Kind::Agate && (agate_turb_ || pattern_.parameters[0] == 0))
+        pattern_.parameters[0] = agate_turb_.value_or(1);
+    auto made = std::make_shared<PatternMap>();
+    made->pattern = pattern_;
+    made->stops = stops_.empty() ? default_stops(nullptr, pattern_.kind) : stops_;
+    if (pattern_.kind != Kind::Average && !is_discrete(pattern_.kind))
+        std::stable_sort(made->stops.begin(), made->stops.end(),
+                         [](const MapStop& a, const MapStop& b) { return a.at < b.at; });
+    pigment_.color = average_of(made->stops);
+    pigment_.pattern = std::move(made);
+}
+
+} // namespace ovc::pov

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reads the patterns of pigments and textures, with their maps, lists, waves and warps.
+#pragma once
+
+#include "importers/pov/values/expression.h"
+
+namespace ovc::pov {
+
+/// What a pattern is for. Normals have no maps or lists here.
+enum class MapOf { Pigments, Textures, Normals };
+
+/// Reads a map of colors, pigments or textures from its { on.
+ColorMap parse_map(Reader& reader, MapOf of);
+
+/// Reads a pattern word by word into a pigment, in any order of its parts.
+class PatternParts {
+public:
+    /// The pattern begins as that of `pigment`, to which finish() gives it back.
+    PatternParts(Reader& reader, Pigment& pigment, MapOf of);
+
+    /// Takes a pattern, a map, a list or a word that changes them. Returns false, and takes
+    /// nothing, where another word comes next.
+    bool take();
+    /// Begins anew with the pattern that the pigment has now.
+    void restart();
+    /// Puts a color or a picture in the pattern's place.
+    void forget();
+    /// Returns whether the token names a pattern that is evaluated.
+    static bool is_pattern(const Token& token);
+    /// Gives the pattern to the pigment, which gets its average color as well.
+    void finish();
+    /// The entries of the map or list.
+    const std::vector<MapStop>& stops() const { return stops_; }
+
+private:
+    bool take_pattern(const Token& token);
+    bool take_list(const Token& token);
+    bool take_number(const Token& token);
+    bool take_wave(const Token& token);
+    void take_warp();
+    void parse_list();
+    void parse_arguments(const Token& token);
+    void add_step(TextureStep step);
+    void choose(Pattern::Kind kind, Pattern::Wave wave);
+    void refuse(const Token& token);
+
+    Reader& reader_;
+    Pigment& pigment_;
+    MapOf of_;
+    bool chosen_ = false;  // there is a pattern
+    bool refused_ = false; // the pattern is one that Overcast does not compute
+    bool changed_ = false;
+    std::optional<double> agate_turb_;
+    Pattern pattern_;
+    std::vector<MapStop> stops_;
+};
+
+/// Returns the average of the stops over [0, 1], a middle grey where there are none.
+Color average_of(const std::vector<MapStop>& stops);
+
+} // namespace ovc::pov

@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/texture/pattern.h"
+#include "importers/readers.h"
+
+#include <gtest/gtest.h>
+
+namespace ovc {
+
+namespace {
+
+Scene textured_scene(const std::string& text) {
+    Result<Scene> scene = parse_pov("#version 3.7;\n" + text, "x.pov", {});
+    if (!scene) {
+        ADD_FAILURE() << text << ": " << scene.error().message;
+        return {};
+    }
+    return std::move(*scene);
+}
+
+Scene textured_box(const std::string& look) {
+    return textured_scene("box { -1, 1 " + look + " }");
+}
+
+const Material& box_material(const Scene& scene) {
+    return scene.materials.at(scene.meshes.at(0).material);
+}
+
+/// Returns the color of the box at a point.
+TransparentColor box_color(const Scene& scene, const dvec3& at) {
+    const Material& material = box_material(scene);
+    if (!material.texture) {
+        ADD_FAILURE() << "no texture";
+        return {};
+    }
+    return color_at(scene.textures, material.texture->texture, material.texture->at(at));
+}
+
+struct AskedColor {
+    const char* pigment;
+    vec3 at, rgb;
+};
+
+/// The colors are those that povray 3.7.0.10 prints for function { pigment { … } }.
+const AskedColor kAskedColors[] = {
+    {"bozo", {0.31f, 0.72f, 0.15f}, {0, 1, 0}},
+    {"bozo", {-1.7f, 2.25f, 0.55f}, {0, 0, 1}},
+    {"marble", {0.31f, 0.72f, 0.15f}, {0.90000f, 0.30400f, 0.30400f}},
+    {"marble", {-1.7f, 2.25f, 0.55f}, {0.90000f, 0.31998f, 0.31998f}},
+    {"wood", {0.31f, 0.72f, 0.15f}, {0.66600f, 0.31200f, 0.20000f}},
+    {"wood", {-1.7f, 2.25f, 0.55f}, {0.66600f, 0.31200f, 0.20000f}},
+    {"agate", {0.31f, 0.72f, 0.15f}, {0.69270f, 0.39270f, 0.09270f}},
+    {"agate", {-1.7f, 2.25f, 0.55f}, {0.66650f, 0.36650f, 0.06650f}},
+    {"radial", {0.31f, 0.72f, 0.15f}, {0.21475f, 0.78525f, 1}},
+    {"radial", {-1.7f, 2.25f, 0.55f}, {1, 0.34895f, 0.65105f}},
+    {"brick", {0.31f, 0.72f, 0.15f}, {0.60000f, 0.15000f, 0.15000f}},
+    {"brick", {-1.7f, 2.25f, 0.55f}, {0.60000f, 0.15000f, 0.15000f}},
+    {"hexagon", {0.31f, 0.72f, 0.15f}, {0, 0, 1}},
+    {"hexagon", {-1.7f, 2.25f, 0.55f}, {1, 0, 0}},
+    {"cubic", {0.31f, 0.72f, 0.15f}, {0, 1, 0}},
+    {"cubic", {-1.7f, 2.25f, 0.55f}, {0, 1, 0}},
+    {"checker rgb x, rgb z scale 0.4", {0.31f, 0.72f, 0.15f}, {0, 0, 1}},
+    {"checker rgb x, rgb z scale 0.4", {-1.7f, 2.25f, 0.55f}, {0, 0, 1}},
+    {"gradient <1,2,0> turbulence 0.4 color_map { [0.2 rgb x] [0.5 rgb y] [0.5 rgb z] [0.8 rgb 1] "
+     "} rotate 30*z",
+     {0.31f, 0.72f, 0.15f},
+     {0.00197f, 0.99803f, 0}},
+    {"gradient <1,2,0> turbulence 0.4 color_map { [0.2 rgb x] [0.5 rgb y] [0.5 rgb z] [0.8 rgb 1] "
+     "} rotate 30*z",
+     {-1.7f, 2.25f, 0.55f},
+     {0.28722f, 0.71278f, 0}},
+    {"marble turbulence 0.3 lambda 2.2 pigment_map { [0.1 bozo scale 0.3] [0.7 rgb x] } scale 0.7 "
+     "translate 0.2",
+     {0.31f, 0.72f, 0.15f},
+     {1, 0, 0}},
+    {"marble turbulence 0.3 lambda 2.2 pigment_map { [0.1 bozo scale 0.3] [0.7 rgb x] } scale 0.7 "
+     "translate 0.2",
+     {-1.7f, 2.25f, 0.55f},
+     {1, 0.04190f, 0.04190f}},
+    {"granite warp { turbulence 0.3 octaves 2 } scale 0.5 warp { repeat 2*x offset y flip x } "
+     "rotate 20*y",
+     {0.31f, 0.72f, 0.15f},
+     {0.31106f, 0.31106f, 0.31106f}},
+    {"granite warp { turbulence 0.3 octaves 2 } scale 0.5 warp { repeat 2*x offset y flip x } "
+     "rotate 20*y",
+     {-1.7f, 2.25f, 0.55f},
+     {0.39213f, 0.39213f, 0.39213f}},
+    {"average pigment_map { [1 wood scale 0.2] [2 leopard scale 0.1] }",
+     {0.31f, 0.72f, 0.15f},
+     {0.47081f, 0.35281f, 0.31548f}},
+    {"average pigment_map { [1 wood scale 0.2] [2 leopard scale 0.1] }",
+     {-1.7f, 2.25f, 0.55f},
+     {0.22596f, 0.10796f, 0.07063f}},
+    {"checker pigment { onion } pigment { gradient x } turbulence 0.2",
+     {0.31f, 0.72f, 0.15f},
+     {0.71963f, 0.71963f, 0.71963f}},
+    {"checker pigment { onion } pigment { gradient x } turbulence 0.2",
+     {-1.7f, 2.25f, 0.55f},
+     {0.82224f, 0.82224f, 0.82224f}},
+    {"wrinkles color_map { [0, 0.4 color rgb 0 color rgb 1] [0.4, 1 color rgb x color rgb y] } "
+     "scale 0.3",
+     {0.31f, 0.72f, 0.15f},
+     {0.52206f, 0.47794f, 0}},
+    {"wrinkles color_map { [0, 0.4 color rgb 0 color rgb 1] [0.4, 1 color rgb x color rgb y] } "
+     "scale 0.3",
+     {-1.7f, 2.25f, 0.55f},
+     {0.51706f, 0.48294f, 0}},
+    {"spherical sine_wave frequency 3 phase 0.1 scale 2 color_map { [0 rgb x] [1 rgb z] }",
+     {0.31f, 0.72f, 0.15f},
+     {0.78672f, 0, 0.21328f}},
+    {"spherical sine_wave frequency 3 phase 0.1 scale 2 color_map { [0 rgb x] [1 rgb z] }",
+     {-1.7f, 2.25f, 0.55f},
+     {0.20611f, 0, 0.79389f}},
+};
+
+} // namespace
+
+TEST(PovPattern, HasTheColorsThatPovrayPrints) {
+    for (const AskedColor& asked : kAskedColors) {
+        const Scene scene = textured_box("pigment { " + std::string(asked.pigment) + " }");
+        const TransparentColor color = box_color(scene, dvec3(asked.at));
+        for (int i = 0; i < 3; ++i)
+            EXPECT_NEAR(color.rgb[i], asked.rgb[i], 2e-4) << asked.pigment << " " << i;
+    }
+}
+
+TEST(PovPattern, MovesWithItsObject) {
+    const std::string map = " color_map { [0 rgb 0] [1 rgb 1] } ";
+    const Scene still = textured_box("pigment { gradient x" + map + "}");
+    const Scene moved = textured_box("pigment { gradient x" + map + "scale 2 } translate 3*x");
+    EXPECT_NEAR(box_color(still, {0.25, 0, 0}).rgb.x, 0.25, 1e-6);
+    EXPECT_NEAR(box_color(moved, {3.5, 0, 0}).rgb.x, 0.25, 1e-6);
+}
+
+TEST(PovPattern, ChangesWhatANameStandsFor) {
+    const Scene scene = textured_scene("#declare P = pigment { marble color_map { [0 rgb x]"
+                                       " [1 rgb y] } } box { -1, 1 pigment { P turbulence 0.5 } }");
+    const Texture& texture = scene.textures.at(box_material(scene).texture->texture);
+    EXPECT_EQ(texture.pattern.kind, Pattern::Kind::Marble);
+    EXPECT_EQ(texture.pattern.turbulence, dvec3(0.5));
+    EXPECT_EQ(texture.stops.at(1).color.rgb, vec3(0, 1, 0));
+}
+
+TEST(PovPattern, OldScenesHaveOldNoise) {
+    for (const auto& [version, kind] :
+         {std::pair{"3.1", NoiseKind::Original}, {"3.6", NoiseKind::Corrected}}) {
+        const Scene scene =
+            textured_scene("#version " + std::string(version) + "; box { -1, 1 pigment { bozo } }");
+        EXPECT_EQ(scene.textures.at(0).pattern.noise, kind) << version;
+    }
+}
+
+TEST(PovTexture, HasLayers) {
+    const Scene scene =
+        textured_box("texture { pigment { rgb x } finish { ambient 0.5 } } "
+                     "texture { pigment { bozo color_map { [0 rgb y] [1 rgbt 1] } } }");
+    const Material& upper = box_material(scene);
+    ASSERT_NE(upper.under, kNone);
+    EXPECT_GT(upper.transmission, 0);
+    EXPECT_EQ(scene.materials[upper.under].color, vec3(1, 0, 0));
+    EXPECT_EQ(scene.materials[upper.under].finish->ambient, vec3(0.5f));
+}
+
+TEST(PovTexture, MixesTextures) {
+    const Scene scene =
+        textured_box("texture { gradient y texture_map { [0.4 pigment { rgb x }] [0.6 "
+                     "pigment { checker } finish { phong 1 } scale 2] } scale 3 }");
+    const Material& mixed = box_material(scene);
+    ASSERT_TRUE(mixed.mix);
+    const Texture& mix = scene.textures.at(mixed.mix->texture);
+    ASSERT_EQ(mix.stops.size(), 2u);
+    EXPECT_EQ(scene.materials.at(mix.stops[0].texture).color, vec3(1, 0, 0));
+    const Material& checkered = scene.materials.at(mix.stops[1].texture);
+    EXPECT_EQ(checkered.finish->phong, 1);
+    ASSERT_TRUE(checkered.texture);
+    EXPECT_EQ(checkered.texture->at({6, 12, -6}), dvec3(1, 2, -1)) << "both scales";
+}
+
+TEST(PovNormal, TiltsNormals) {
+    const Scene scene = textured_box("pigment { rgb 1 } normal { granite 0.3 accuracy 0.1 scale 2 "
+                                     "turbulence 0.2 } scale 3");
+    const Material& material = box_material(scene);
+    ASSERT_TRUE(material.bump);
+    EXPECT_EQ(material.bump->kind, Bump::Kind::Height);
+    EXPECT_EQ(material.bump->amount, 0.3);
+    EXPECT_EQ(material.bump->accuracy, 0.1);
+    EXPECT_EQ(material.bump->pattern.at({6, 12, -6}), dvec3(1, 2, -1)) << "both scales";
+    const Pattern& pattern = scene.textures.at(material.bump->pattern.texture).pattern;
+    EXPECT_EQ(pattern.kind, Pattern::Kind::Granite);
+    EXPECT_EQ(pattern.turbulence, dvec3(0.2));
+    const Scene named = textured_scene("#declare N = normal { bumps 0.4 }\n"
+                                       "box { -1, 1 texture { normal { N bump_size 0.7 } } }");
+    EXPECT_EQ(box_material(named).bump->kind, Bump::Kind::Noise);
+    EXPECT_EQ(box_material(named).bump->amount, 0.7);
+    EXPECT_TRUE(scene.omissions.empty());
+}
+
+TEST(PovSky, HasPatterns) {
+    const Scene scene = textured_scene("sky_sphere { pigment { gradient y } "
+                                       "pigment { rgbt <1, 0, 0, 0.5> } scale 2 }");
+    ASSERT_EQ(scene.background.layers.size(), 2u);
+    const PlacedTexture& lower = scene.background.layers[0];
+    EXPECT_NEAR(color_at(scene.textures, lower.texture, lower.at({0, 1, 0})).rgb.x, 0.5, 1e-6);
+    EXPECT_EQ(scene.textures[scene.background.layers[1].texture].stops[0].color.transmit, 0.5f);
+}
+
+TEST(PovPattern, MixesTexturesOnly) {
+    const Result<Scene> scene = parse_pov(
+        "box { 0, 1 texture { gradient x color_map { [0 rgb 0] [1 rgb 1] } } }", "x.pov", {});
+    ASSERT_FALSE(scene);
+    EXPECT_NE(scene.error().message.find("expected textures"), std::string::npos);
+}
+
+} // namespace ovc

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "importers/pov/texture_table.h"
+
+#include "core/texture/pattern.h"
+#include "importers/pov/material_table.h"
+
+#include <algorithm>
+#include <functional>
+
+namespace ovc::pov {
+
+static PlacedTexture placed_texture(uint32_t number, const dmat4& placed) {
+    const dmat4 back = glm::inverse(placed);
+    PlacedTexture texture{number, {}};
+    for (int row = 0; row < 3; ++row)
+        for (int column = 0; column < 4; ++column)
+            texture.to_texture[size_t(row)][column] = back[column][row];
+    return texture;
+}
+
+/// Puts the transformation of a stop's pigment in front of its pattern: a texture's stops have no
+/// transformations of their own.
+static void put_in_front(const dmat4& placed, Pattern& pattern) {
+    if (placed == dmat4(1))
+        return;
+    TextureStep step;
+    step.rows = placed_texture(0, placed).to_texture;
+    pattern.steps.insert(pattern.steps.begin(), step);
+}
+
+/// Returns a hash of what usually differs.
+static size_t key_of(const ovc::Texture& texture) {
+    size_t key = size_t(texture.pattern.kind) + 31 * texture.stops.size();
+    const auto add = [&](double x) { key = 31 * key + std::hash<double>()(x); };
+    for (const TextureStop& stop : texture.stops)
+        for (int i = 0; i < 3; ++i)
+            add(double(stop.color.rgb[i]));
+    add(texture.pattern.turbulence.x);
+    add(texture.pattern.frequency);
+    return key;
+}
+
+uint32_t TextureTable::add(ovc::Texture texture, bool is_mix) {
+    const size_t key = key_of(texture);
+    const auto [first, last] = by_key_[is_mix].equal_range(key);
+    for (auto known = first; known != last; ++known)
+        if (scene_.textures[known->second] == texture)
+            return known->second;
+    const auto number = uint32_t(scene_.textures.size());
+    by_key_[is_mix].emplace(key, number);
+    scene_.textures.push_back(std::move(texture));
+    return number;
+}
+
+uint32_t TextureTable::number(const PatternMap& map) {
+    if (const auto known = known_.find(&map); known != known_.end())
+        return known->second;
+    ovc::Texture texture{map.pattern, {}};
+    for (const MapStop& stop : map.stops) {
+        const Pigment& pigment = stop.texture ? stop.texture->pigment : stop.pigment;
+        TextureStop made{stop.at, pigment.color};
+        if (pigment.pattern && pigment.placed == dmat4(1)) {
+            made.texture = number(*pigment.pattern);
+        } else if (pigment.pattern) {
+            ovc::Texture moved = scene_.textures[number(*pigment.pattern)];
+            put_in_front(pigment.placed, moved.pattern);
+            made.texture = add(std::move(moved), /* is_mix= */ false);
+        }
+        texture.stops.push_back(made);
+    }
+    return known_[&map] = add(std::move(texture), /* is_mix= */ false);
+}
+
+PlacedTexture TextureTable::of_pigments(const PatternMap& map, const dmat4& placed) {
+    return placed_texture(number(map), placed);
+}
+
+PlacedTexture TextureTable::of_materials(const PatternMap& map, std::span<const uint32_t> materials,
+                                         const dmat4& placed) {
+    ovc::Texture texture{map.pattern, {}};
+    for (size_t i = 0; i < map.stops.size(); ++i)
+        texture.stops.push_back({map.stops[i].at, {}, materials[i]});
+    return placed_texture(add(std::move(texture), /* is_mix= */ true), placed);
+}
+
+ColorFormula color_function(const Pigment& pigment) {
+    if (!pigment.pattern)
+        return [color = pigment.color](const dvec3&) { return color; };
+    Scene scratch;
+    const PlacedTexture placed =
+        TextureTable(scratch).of_pigments(*pigment.pattern, pigment.placed);
+    return [placed, textures = std::move(scratch.textures)](const dvec3& at) {
+        return color_at(textures, placed.texture, placed.at(at));
+    };
+}
+
+bool lets_light_through(const Pigment& pigment) {
+    if (!pigment.pattern)
+        return pigment.color.filter > 0 || pigment.color.transmit > 0;
+    const std::vector<MapStop>& stops = pigment.pattern->stops;
+    return std::any_of(stops.begin(), stops.end(), [](const MapStop& stop) {
+        return lets_light_through(stop.texture ? stop.texture->pigment : stop.pigment);
+    });
+}
+
+void add_sky(const SkySphere& sky, const Look& look, Scene& scene) {
+    TextureTable textures(scene);
+    Background& background = scene.background;
+    for (const Pigment& pigment : sky.pigments) {
+        tell_all(pigment.notes, look);
+        if (pigment.pattern) {
+            background.layers.push_back(textures.of_pigments(*pigment.pattern, pigment.placed));
+        } else if (background.layers.empty()) {
+            const Color& color = pigment.color;
+            background.horizon = background.zenith =
+                color.opacity() * color.rgb + color.through() * background.horizon;
+        } else {
+            PatternMap one;
+            one.stops.resize(1);
+            one.stops[0].pigment = pigment;
+            background.layers.push_back(textures.of_pigments(one, dmat4(1)));
+        }
+    }
+}
+
+} // namespace ovc::pov

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// TextureTable turns patterns into the textures of a scene.
+#pragma once
+
+#include "core/scene.h"
+#include "importers/pov/values/value.h"
+
+#include <span>
+#include <unordered_map>
+
+namespace ovc::pov {
+
+struct Look;
+
+/// Adds textures to a scene. Equal ones are added once. Patterns must outlive it.
+class TextureTable {
+public:
+    explicit TextureTable(Scene& scene) : scene_(scene) {}
+
+    /// Returns the pattern's colors as they lie in the world. placed: brings the pattern there.
+    PlacedTexture of_pigments(const PatternMap& map, const dmat4& placed);
+    /// Does the same for a mix of materials, one for each stop.
+    PlacedTexture of_materials(const PatternMap& map, std::span<const uint32_t> materials,
+                               const dmat4& placed);
+
+private:
+    uint32_t number(const PatternMap& map);
+    uint32_t add(ovc::Texture texture, bool is_mix);
+
+    Scene& scene_;
+    std::unordered_map<const PatternMap*, uint32_t> known_;
+    std::unordered_multimap<size_t, uint32_t> by_key_[2]; // of colors, of materials
+};
+
+/// Returns the pigment's color as a function of a point of its parent's space.
+ColorFormula color_function(const Pigment& pigment);
+
+/// Returns whether a color of the pigment lets light through.
+bool lets_light_through(const Pigment& pigment);
+
+/// Adds the sky's pigments, the lowest first, to the scene's background, and tells their notes.
+void add_sky(const SkySphere& sky, const Look& look, Scene& scene);
+
+} // namespace ovc::pov
