@@ -7,7 +7,7 @@ layout(r32ui, binding = OVC_BINDING_ACTIVE) uniform writeonly restrict uimageBuf
 void mark_active(int leaf) { imageStore(active_leaves, leaf, uvec4(1u)); }
 #endif
 
-OVC_TEXELS(OVC_BINDING_POOL) pool[OVC_POOL_BUFFERS];
+OVC_TEXELS(OVC_BINDING_POOL, PoolTexels) pool[OVC_POOL_BUFFERS];
 
 #define OVC_UNIT_OF(number, at) \
     Unit(OVC_TEXEL(pool[number], at), OVC_TEXEL(pool[number], at + 1), \

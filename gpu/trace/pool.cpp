@@ -43,9 +43,9 @@ void Pool::write(uint64_t offset, uint32_t word) const {
                          sizeof(word), &word);
 }
 
-void Pool::bind(bool as_images) const {
+void Pool::bind(TexelReads reads) const {
     for (size_t i = 0; i < texels_.size(); ++i)
-        texels_[i].bind(OVC_BINDING_POOL + GLuint(i), as_images);
+        texels_[i].bind(OVC_BINDING_POOL + GLuint(i), reads);
 }
 
 } // namespace ovc

@@ -32,8 +32,8 @@ public:
     /// Writes a word at `offset`, in bytes.
     void write(uint64_t offset, uint32_t word) const;
 
-    /// Binds all buffers for a kernel to read, as images or as textures.
-    void bind(bool as_images) const;
+    /// Binds all buffers for a kernel to read.
+    void bind(TexelReads reads) const;
 
 private:
     PoolLayout layout_;

@@ -18,7 +18,10 @@ TEST(KernelVariants, SwitchesMeetInAllWays) {
     for (const bool a : {false, true})
         for (const bool b : {false, true}) {
             EXPECT_TRUE(there(
-                [&](const ShaderConfig& c) { return c.compute == a && c.buffer_images == b; }));
+                [&](const ShaderConfig& c) { return c.compute == a && (c.reads == TexelReads::Images) == b; }));
+            EXPECT_TRUE(there([&](const ShaderConfig& c) {
+                return (c.reads == TexelReads::StorageBuffers) == a && c.portals == b;
+            }));
             EXPECT_TRUE(
                 there([&](const ShaderConfig& c) { return c.any_hit == a && c.certify == b; }));
             EXPECT_TRUE(there([&](const ShaderConfig& c) {

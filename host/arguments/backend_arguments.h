@@ -27,6 +27,7 @@ struct BackendArguments {
     std::string device;
     std::string precision;
     std::string kernel;
+    std::string kernel_variant;
     std::string level1;
     std::string level1_build;
 

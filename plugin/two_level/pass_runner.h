@@ -97,6 +97,9 @@ private:
     void close();
     void bring_first(BuildProgress* progress);
     Moved move_in(std::span<const uint32_t> wanted);
+    bool measures() const;
+    ChosenVariants variants(const GlState& state) const;
+    void tune(GlState& state, std::span<const RayState> rays, double kernel_seconds);
     /// Whether the tracer's context is alive. Called on the context's thread.
     bool is_ours(const GlState& state) const {
         return state.generation == tracer_generation_ && state.context.alive();
