@@ -68,7 +68,7 @@
 #define OVC_DEAL_GROUPS 1
 #endif
 // How pages, portals and rays are read. 0: by texelFetch; 1: by imageLoad (inlined on llvmpipe, 5 %
-// faster); 2: from storage buffers. OVC_TEXELS declares such texels, under a name that no other has.
+// faster); 2: from storage buffers. OVC_TEXELS declares such texels under a name of their own.
 #ifndef OVC_READS
 #define OVC_READS 1
 #endif
@@ -87,6 +87,11 @@
 // Invocations in a work group of the compute kernel: OVC_MAX_GROUP_SIZE or a part of it.
 #ifndef OVC_GROUP_SIZE
 #define OVC_GROUP_SIZE 64
+#endif
+// 1: instead of further candidates an answer tells how many rounds its ray took, and how many units
+// were fetched for it; for gpu/warp, and not with ray refill.
+#ifndef OVC_COUNTS
+#define OVC_COUNTS 0
 #endif
 // A ray's loops end after so many rounds and report it, before a driver ends them silently.
 #ifndef OVC_MAX_ROUNDS

@@ -147,8 +147,8 @@ void describe_reads(DeviceInfo& info) {
     info.pool_buffers_by_reads = {
         max_pool_buffers({GL_MAX_COMPUTE_TEXTURE_IMAGE_UNITS, GL_MAX_TEXTURE_IMAGE_UNITS,
                           GL_MAX_COMBINED_TEXTURE_IMAGE_UNITS}),
-        max_pool_buffers({GL_MAX_COMPUTE_IMAGE_UNIFORMS, GL_MAX_FRAGMENT_IMAGE_UNIFORMS,
-                          GL_MAX_IMAGE_UNITS}),
+        max_pool_buffers(
+            {GL_MAX_COMPUTE_IMAGE_UNIFORMS, GL_MAX_FRAGMENT_IMAGE_UNIFORMS, GL_MAX_IMAGE_UNITS}),
         max_pool_buffers({GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS,
                           GL_MAX_FRAGMENT_SHADER_STORAGE_BLOCKS,
                           GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS})};

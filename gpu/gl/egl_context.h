@@ -25,11 +25,12 @@ struct DeviceInfo {
     bool takes_host_pages = false;
     uint32_t max_texture_size = 0;
     uint64_t max_buffer_texels = 0;
-    uint32_t subgroup_lanes = 0; // as the driver reports it (GL_KHR_shader_subgroup); 0: it does not
+    uint32_t subgroup_lanes =
+        0; // as the driver reports it (GL_KHR_shader_subgroup); 0: it does not
     uint32_t max_pool_buffers = 1; // that a kernel can read beside its other inputs
     /// The same by TexelReads; what a variant may try.
     std::array<uint32_t, 3> pool_buffers_by_reads{1, 1, 1};
-    uint64_t max_storage_bytes = 0; // of one storage buffer
+    uint64_t max_storage_bytes = 0;   // of one storage buffer
     uint64_t buffer_alignment = 16;   // bytes, of windows into a buffer
     uint64_t memory_bytes = 0;        // free, as reported; on a software renderer 1 GiB
     uint64_t shared_budget_bytes = 0; // of all scenes together; 0: each has a budget of its own

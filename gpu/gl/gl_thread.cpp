@@ -3,7 +3,6 @@
 #include "gpu/gl/gl_thread.h"
 
 #include "gpu/gl/driver_threads.h"
-#include "gpu/gl/program_store.h"
 
 #include <chrono>
 #include <utility>
@@ -125,10 +124,7 @@ void GlThread::serve() {
         return;
     }
     info_ = context->info();
-    const TuningFile file(ProgramStore::default_folder(),
-                          info_.vendor + "\n" + info_.renderer + "\n" + info_.version);
-    GlState state{std::move(*context), DebugOutput(log_), {}, DeviceTuning(info_, file, log_),
-                  gl::context_generation};
+    GlState state{std::move(*context), DebugOutput(log_), {}, {}, gl::context_generation};
     info_.shared_budget_bytes = budget_.bytes();
     started_ = Done{};
     changed_.notify_all();

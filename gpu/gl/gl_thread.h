@@ -9,7 +9,6 @@
 #include "gpu/gl/debug_output.h"
 #include "gpu/gl/egl_context.h"
 #include "gpu/gl/kernel.h"
-#include "gpu/tuning/device_tuning.h"
 
 #include <atomic>
 #include <condition_variable>
@@ -30,14 +29,16 @@ struct DeviceLimits {
     LoopThreads* loops = nullptr;  // of the device; outlives it. Null: those of the process
 };
 
+class DeviceTuning;
+
 /// The state that lives on the thread: the context, the programs compiled in it, which are
 /// destroyed first, and the variants that suit the device.
 struct GlState {
     EglContext context;
     DebugOutput debug;
     KernelCache kernels;
-    DeviceTuning tuning;
-    uint32_t generation; // of the context: GlThread::generation()
+    std::shared_ptr<DeviceTuning> tuning; // made by who first traces rays; null before
+    uint32_t generation;                  // of the context: GlThread::generation()
 };
 
 class GlThread {

@@ -19,13 +19,13 @@ namespace {
 
 constexpr uint32_t kMaxBlocks = 2048; // half a million rays; a pass gains nothing from more
 constexpr uint32_t kMaxBlocksInSoftware = 512; // fewer, as llvmpipe clears the memory it allocates
-constexpr uint32_t kMaxWordsInRegisters = 32; // Workaround::ShortRegisterStack
+constexpr uint32_t kMaxWordsInRegisters = 32;  // Workaround::ShortRegisterStack
 constexpr size_t kMaxLostShare =
     256; // if more than one ray in so many is lost, kernels go on longer
 // With ray refill: the max rays of a lane on average, if each thread still has some groups.
 constexpr size_t kLaneRays = 128;
 constexpr size_t kGroupsAThread = 4;
-constexpr size_t kLanesOfGpu = 65536; // as many as a large GPU runs at once
+constexpr size_t kLanesOfGpu = 65536;     // as many as a large GPU runs at once
 constexpr size_t kRayGrain = 1024;        // rays a task
 constexpr uint64_t kSmallestPool = 16384; // a page of some hundred triangles
 
@@ -276,6 +276,10 @@ void Tracer::upload(std::span<const RayState> rays) {
 
 /// Uploads rays as they are, for a kernel that changes frames.
 void Tracer::upload_world(std::span<const RayState> rays) {
+    kind_.coherent = coherent(rays.size(), [&](size_t i) {
+        LocalTime unused;
+        return local_ray(scene_, rays[i].ray, OVC_NO_TRIANGLE, false, unused);
+    });
     variant_ = options_.variants[kind_];
     glNamedBufferSubData(ray_buffer_.id(), 0,
                          GLsizeiptr(whole_blocks(rays.size()) * sizeof(RayState)), rays.data());
@@ -314,7 +318,7 @@ void Tracer::upload_local(std::span<const RayState> rays, std::vector<Sent>& sen
         convert(scene_);
     kind_.coherent = coherent(std::span<const Sent>(sent).first(rays.size()));
     variant_ = options_.variants[kind_];
-    if (variant_.packets && kind_.coherent)
+    if (packs(variant_))
         if (auto parted = part_packets(sent, rays.size(), max_slots_)) {
             packets_ = true;
             parted_ = std::move(*parted);
@@ -349,6 +353,7 @@ ShaderConfig Tracer::shader_config(const KernelVariant& variant) const {
     ShaderConfig config;
     config.any_hit = kind_.any_hit;
     config.certify = options_.certify;
+    config.counts = options_.counts;
     config.portals = has_portals();
     config.far_triangles = !top_.far_triangles.empty();
     config.may_wait = may_wait();
@@ -366,7 +371,7 @@ ShaderConfig Tracer::shader_config(const KernelVariant& variant) const {
     config.deal_groups = variant.deal_groups;
     config.reads = variant.reads;
     config.group_size = variant.group_size;
-    config.packet = variant.packets && kind_.coherent ? kPacketRays : 1;
+    config.packet = packs(variant) ? kPacketRays : 1;
     config.refill = variant.refill && !never_refills_;
     return config;
 }
@@ -403,8 +408,7 @@ Result<Done> Tracer::launch() {
                            GL_R32UI);
     size_t group_rays = size_t(config.group_size) * config.packet;
     if (config.refill)
-        group_rays *=
-            packets_a_lane(slots_sent_, config.packet, variant_, device_.is_software);
+        group_rays *= packets_a_lane(slots_sent_, config.packet, variant_, device_.is_software);
     const Stopwatch watch;
     if (device_.is_software)
         driver_threads_.start();

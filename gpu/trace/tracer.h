@@ -42,6 +42,7 @@ static_assert(sizeof(RayState) == OVC_RAY_TEXELS * sizeof(uvec4));
 struct PassOptions {
     bool certify = true; // false: fast precision
     ChosenVariants variants;
+    bool counts = false; // answers tell rounds and units in the place of further()
 };
 
 /// How a budget is shared out: pages get the bytes that rays, answers and portals leave.
@@ -160,6 +161,9 @@ private:
     void come_back(std::span<Answer> answers) const;
     ShaderConfig shader_config(const KernelVariant& variant) const;
     Result<Done> make_answers();
+    bool packs(const KernelVariant& variant) const {
+        return variant.packets && kind_.coherent && !kind_.portals;
+    }
     uint32_t stack_words(const KernelVariant& variant) const;
     Result<Done> launch();
     void read(std::span<Answer> answers);
@@ -176,8 +180,8 @@ private:
     PassOptions options_;
     std::span<const Page> page_data_;
     const DeviceInfo device_;
-    RayKind kind_;          // of the rays of the pass
-    KernelVariant variant_; // of the pass
+    RayKind kind_;               // of the rays of the pass
+    KernelVariant variant_;      // of the pass
     bool long_stacks_ = false;   // eight words were too few
     bool never_refills_ = false; // rays need all rounds that there are
     const bool counts_rounds_ = needs(Workaround::CountedRounds);

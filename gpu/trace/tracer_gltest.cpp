@@ -18,8 +18,7 @@ protected:
     }
 
     void load(const Soup& soup, LoosePairs loose = LoosePairs{}, bool compute = false) {
-        const PassOptions options{.variants =
-                                      ChosenVariants(default_variant(gl->info(), compute))};
+        const PassOptions options{.variants = default_variants(gl->info(), compute)};
         Box bounds;
         const auto ids = hittable_triangles(soup, nullptr, &bounds);
         gl->run([&](GlState&) { tracer.reset(); });

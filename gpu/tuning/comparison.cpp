@@ -7,8 +7,8 @@
 
 namespace ovc {
 
-std::optional<Comparison> compare(const KernelVariant& base, const KernelVariant& candidate,
-                                  size_t rounds, TimeVariant time) {
+std::optional<VariantComparison> compare(const KernelVariant& base, const KernelVariant& candidate,
+                                         size_t rounds, TimeVariant time) {
     assert(rounds > 0);
     if (!time(base) || !time(candidate))
         return {};
@@ -26,7 +26,7 @@ std::optional<Comparison> compare(const KernelVariant& base, const KernelVariant
         base_seconds.push_back(of_base);
     }
     std::ranges::sort(ratios);
-    Comparison found;
+    VariantComparison found;
     found.ratio = ratios[rounds / 2];
     found.base_seconds = *std::ranges::min_element(base_seconds);
     found.is_faster = found.ratio < 1 - kWorthwhile && ratios.back() < 1;

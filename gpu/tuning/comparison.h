@@ -14,7 +14,7 @@ namespace ovc {
 /// device refuses the variant, or its answers contradict those of another.
 using TimeVariant = FunctionRef<std::optional<double>(const KernelVariant&)>;
 
-struct Comparison {
+struct VariantComparison {
     double ratio = 1;        // the candidate's time to the other's: the median of all rounds
     double base_seconds = 0; // min of all rounds
     bool is_faster = false;  // beyond doubt: in every round, and by kWorthwhile in most
@@ -25,7 +25,7 @@ inline constexpr double kWorthwhile = 0.03;
 
 /// Times both in each of `rounds` (> 0), after a first trial of each that is not counted, in which
 /// drivers finish what they compile. Nothing: the candidate cannot be used.
-std::optional<Comparison> compare(const KernelVariant& base, const KernelVariant& candidate,
-                                  size_t rounds, TimeVariant time);
+std::optional<VariantComparison> compare(const KernelVariant& base, const KernelVariant& candidate,
+                                         size_t rounds, TimeVariant time);
 
 } // namespace ovc

@@ -5,6 +5,7 @@
 
 #include "core/system/stopwatch.h"
 #include "core/text/format_text.h"
+#include "gpu/gl/program_store.h"
 
 #include <algorithm>
 #include <cmath>
@@ -32,14 +33,20 @@ DeviceTuning::DeviceTuning(const DeviceInfo& device, TuningFile file, LogSink lo
     : device_(device),
       file_(std::move(file)),
       log_(std::move(log)),
-      default_(default_variant(device)),
+      defaults_(default_variants(device)),
       record_(file_.load().value_or(TuningRecord{})),
-      variants_(default_) {
+      variants_(defaults_) {
     for (size_t kind = 0; kind < RayKind::kCount; ++kind)
         if (const std::optional<KernelVariant>& chosen = record_.chosen[kind]) {
             variants_[RayKind::of(kind)] = *chosen;
             searches_[kind].over = true;
         }
+}
+
+std::shared_ptr<DeviceTuning> DeviceTuning::of(const DeviceInfo& device, LogSink log) {
+    const std::string driver = device.vendor + "\n" + device.renderer + "\n" + device.version;
+    const TuningFile file(ProgramStore::default_folder(), driver);
+    return std::make_shared<DeviceTuning>(device, file, std::move(log));
 }
 
 bool DeviceTuning::is_due(const Search& search, size_t rays, const TuningLimits& limits) const {
@@ -49,11 +56,20 @@ bool DeviceTuning::is_due(const Search& search, size_t rays, const TuningLimits&
            record_.seconds < limits.seconds;
 }
 
-void DeviceTuning::after_pass(RayKind kind, size_t rays, double kernel_seconds,
-                              const TuningLimits& limits, VariantTrials& trials) {
+/// Whether there is time for another candidate. Half as much again is left, because a compiler's
+/// time and what else the machine does are not known before.
+bool DeviceTuning::is_time(const Search& search, const TuningLimits& limits) const {
+    const double step = 1.5 * std::max(longest_step_, search.compile_seconds);
+    return record_.seconds + step <= limits.seconds &&
+           (search.next == 0 || search.seconds + step <= limits.kind_seconds);
+}
+
+void DeviceTuning::after_pass(RayKind kind, const PassCost& pass, const TuningLimits& limits,
+                              VariantTrials& trials) {
     Search& search = searches_[kind.number()];
-    search.kernel_seconds += kernel_seconds;
-    if (!is_due(search, rays, limits))
+    search.kernel_seconds += pass.kernel_seconds;
+    search.compile_seconds = std::max(search.compile_seconds, pass.seconds - pass.kernel_seconds);
+    if (!is_due(search, pass.rays, limits))
         return;
     const Stopwatch watch;
     const double before = search.seconds;
@@ -78,10 +94,11 @@ void DeviceTuning::after_pass(RayKind kind, size_t rays, double kernel_seconds,
 
 void DeviceTuning::begin(RayKind kind, Search& search, VariantTrials& trials) {
     search.begun = true;
-    const auto differs = [&](const KernelVariant& v) { // packets are for coherent rays alone
-        return kind.coherent || !v.compute || v.packets == default_.packets;
+    const KernelVariant& base = defaults_[kind];
+    const auto differs = [&](const KernelVariant& v) { // where packets mean nothing, it does not
+        return (kind.coherent && !kind.portals) || !v.compute || v.packets == base.packets;
     };
-    for (const KernelVariant& variant : neighbours(default_, device_, /* other_kernel= */ true))
+    for (const KernelVariant& variant : neighbours(base, device_, /* other_kernel= */ true))
         if (differs(variant) && trials.can_run(variant))
             search.candidates.push_back({variant});
 }
@@ -89,11 +106,7 @@ void DeviceTuning::begin(RayKind kind, Search& search, VariantTrials& trials) {
 /// Compares the next candidate, if there is time for that and the driver has compiled it.
 DeviceTuning::Next DeviceTuning::go_on(RayKind kind, Search& search, const TuningLimits& limits,
                                        VariantTrials& trials) {
-    const auto is_time = [&] {
-        return record_.seconds + longest_step_ <= limits.seconds &&
-               search.seconds + longest_step_ <= limits.kind_seconds;
-    };
-    if (search.next == search.candidates.size() || !is_time())
+    if (search.next == search.candidates.size() || !is_time(search, limits))
         return Next::Decide;
     Candidate& candidate = search.candidates[search.next];
     const Stopwatch watch;
@@ -101,7 +114,7 @@ DeviceTuning::Next DeviceTuning::go_on(RayKind kind, Search& search, const Tunin
         trials.begin(candidate.variant);
     const bool is_ready = limits.in_one_go || trials.is_ready(candidate.variant);
     if (is_ready) {
-        candidate.result = compare(default_, candidate.variant, limits.rounds,
+        candidate.result = compare(defaults_[kind], candidate.variant, limits.rounds,
                                    [&](const KernelVariant& v) { return trials.time(v); });
         tell(kind, candidate.variant, candidate.result);
         ++search.next;
@@ -111,50 +124,72 @@ DeviceTuning::Next DeviceTuning::go_on(RayKind kind, Search& search, const Tunin
     return is_ready ? Next::Step : Next::Pass;
 }
 
-/// Returns the default with all switches that gained alone; nothing if none did.
-std::optional<KernelVariant> DeviceTuning::all_changes_that_gain(const Search& search) const {
-    std::vector<const Candidate*> gains;
-    for (const Candidate& candidate : search.candidates)
-        if (candidate.result && candidate.result->is_faster)
-            gains.push_back(&candidate);
-    if (gains.empty())
-        return {};
-    // Of two values of one switch the better comes last, and stays.
-    std::ranges::sort(gains, std::greater(),
-                      [](const Candidate* candidate) { return candidate->result->ratio; });
-    KernelVariant all = default_;
-    for (const Candidate* candidate : gains)
-        all = with_changes(all, default_, candidate->variant);
-    const bool fits = bool(parse_variant(all.text()));
-    return fits ? all : gains.back()->variant;
+static bool gains(const std::optional<VariantComparison>& result) {
+    return result && result->is_faster;
 }
 
+/// Returns the candidate that gained most, with all other switches that gained in its kernel;
+/// nothing if none did.
+std::optional<KernelVariant> DeviceTuning::all_changes_that_gain(const KernelVariant& base,
+                                                                 const Search& search) {
+    const Candidate* const best = best_of(search);
+    if (!best)
+        return {};
+    KernelVariant all = best->variant;
+    for (const Candidate& other : search.candidates)
+        if (gains(other.result) && other.variant.compute == all.compute)
+            all = with_changes(all, base, other.variant);
+    all = with_changes(all, base, best->variant); // its own value of a switch stays
+    return parse_variant(all.text()) ? all : best->variant;
+}
+
+const DeviceTuning::Candidate* DeviceTuning::best_of(const Search& search) {
+    const Candidate* best = nullptr;
+    for (const Candidate& candidate : search.candidates)
+        if (gains(candidate.result) && (!best || candidate.result->ratio < best->result->ratio))
+            best = &candidate;
+    return best;
+}
+
+/// Chooses between the default, the best candidate, and all changes that gained together. Whatever
+/// is to replace the default must be faster once more.
 void DeviceTuning::finish(RayKind kind, Search& search, const TuningLimits& limits,
                           VariantTrials& trials) {
-    KernelVariant chosen = default_;
-    if (std::optional<KernelVariant> all = all_changes_that_gain(search)) {
-        const auto known = std::ranges::find(search.candidates, *all, &Candidate::variant);
-        const bool is_compiled = known != search.candidates.end();
-        if (!is_compiled && record_.seconds + longest_step_ > limits.seconds)
-            all = std::ranges::min_element(search.candidates, {}, [](const Candidate& c) {
-                      return c.result && c.result->is_faster ? c.result->ratio : 2.0;
-                  })->variant;
-        const std::optional<Comparison> again =
-            compare(default_, *all, limits.rounds,
-                    [&](const KernelVariant& v) { return trials.time(v); });
-        tell(kind, *all, again);
-        if (again && again->is_faster)
-            chosen = *all;
+    if (search.next == 0) {
+        say(log_, LogLevel::Info,
+            format_text("kernel variants for {} are not measured: compiling one takes longer than "
+                        "there is time; `overcast devices --tune` takes it",
+                        kind.text()));
+        return;
+    }
+    const KernelVariant& base = defaults_[kind];
+    KernelVariant chosen = base;
+    const auto try_again = [&](const KernelVariant& variant) {
+        const std::optional<VariantComparison> again = compare(
+            base, variant, limits.rounds, [&](const KernelVariant& v) { return trials.time(v); });
+        tell(kind, variant, again);
+        return again;
+    };
+    if (const Candidate* const best = best_of(search)) {
+        const std::optional<VariantComparison> alone = try_again(best->variant);
+        if (gains(alone))
+            chosen = best->variant;
+        const KernelVariant all = *all_changes_that_gain(base, search);
+        if (!(all == best->variant) && is_time(search, limits)) {
+            const std::optional<VariantComparison> together = try_again(all);
+            if (gains(together) && (!gains(alone) || together->ratio < alone->ratio))
+                chosen = all;
+        }
     }
     variants_[kind] = chosen;
     record_.chosen[kind.number()] = chosen;
     say(log_, LogLevel::Info,
         format_text("kernel variant for {}: {}{}", kind.text(), chosen.text(),
-                    chosen == default_ ? ", the default" : ""));
+                    chosen == base ? ", the default" : ""));
 }
 
 void DeviceTuning::tell(RayKind kind, const KernelVariant& variant,
-                        const std::optional<Comparison>& result) {
+                        const std::optional<VariantComparison>& result) {
     const std::string outcome =
         result ? format_text("{} times the default's {} ms", in_thousandths(result->ratio),
                              in_thousandths(1e3 * result->base_seconds))

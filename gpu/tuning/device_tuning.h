@@ -10,6 +10,7 @@
 
 #include <array>
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -31,7 +32,7 @@ public:
 
 struct TuningLimits {
     double seconds = 0.3;      // of measuring, on this device, in all runs together
-    double kind_seconds = 0.1; // of them, for one kind of rays
+    double kind_seconds = 0.1; // of them, for one kind of rays; its first candidate may take more
     /// Kernels must have worked so long on a kind before it is measured, so that whoever has few
     /// rays pays nothing.
     double due_seconds = 0.1;
@@ -44,17 +45,25 @@ struct TuningLimits {
     static TuningLimits thorough();
 };
 
+struct PassCost {
+    size_t rays = 0;
+    double kernel_seconds = 0;
+    double seconds = 0; // with everything that the pass waited for, such as a compiler
+};
+
 class DeviceTuning {
 public:
     /// driver: as for TuningFile.
     DeviceTuning(const DeviceInfo& device, TuningFile file, LogSink log);
+    /// With the file for the device in the folder of compiled kernels.
+    static std::shared_ptr<DeviceTuning> of(const DeviceInfo& device, LogSink log);
 
     /// The variants to take now.
     const ChosenVariants& variants() const { return variants_; }
 
-    /// Called after a pass in which the kernel took so long for so many rays of a kind. May call
-    /// `trials` many times; at most as long as `limits` leave.
-    void after_pass(RayKind kind, size_t rays, double kernel_seconds, const TuningLimits& limits,
+    /// Called after a pass of rays of a kind. May call `trials` many times; at most as long as
+    /// `limits` leave.
+    void after_pass(RayKind kind, const PassCost& pass, const TuningLimits& limits,
                     VariantTrials& trials);
 
 private:
@@ -62,10 +71,12 @@ private:
         KernelVariant variant;
         bool begun = false;
         double seconds = 0; // that it has taken
-        std::optional<Comparison> result{};
+        std::optional<VariantComparison> result{};
     };
+    /// Returns the fastest candidate beyond doubt, or null.
     struct Search {
         double kernel_seconds = 0;
+        double compile_seconds = 0; // max of what a pass took besides its kernel
         bool begun = false;
         bool over = false;
         std::vector<Candidate> candidates;
@@ -74,18 +85,22 @@ private:
     };
 
     bool is_due(const Search& search, size_t rays, const TuningLimits& limits) const;
+    bool is_time(const Search& search, const TuningLimits& limits) const;
     void begin(RayKind kind, Search& search, VariantTrials& trials);
     /// What comes after a step: another, the next pass of this kind, or the decision.
     enum class Next { Step, Pass, Decide };
     Next go_on(RayKind kind, Search& search, const TuningLimits& limits, VariantTrials& trials);
     void finish(RayKind kind, Search& search, const TuningLimits& limits, VariantTrials& trials);
-    std::optional<KernelVariant> all_changes_that_gain(const Search& search) const;
-    void tell(RayKind kind, const KernelVariant& variant, const std::optional<Comparison>& result);
+    static const Candidate* best_of(const Search& search);
+    static std::optional<KernelVariant> all_changes_that_gain(const KernelVariant& base,
+                                                              const Search& search);
+    void tell(RayKind kind, const KernelVariant& variant,
+              const std::optional<VariantComparison>& result);
 
     const DeviceInfo device_;
     const TuningFile file_;
     const LogSink log_;
-    const KernelVariant default_;
+    const ChosenVariants defaults_;
     TuningRecord record_;
     ChosenVariants variants_;
     std::array<Search, RayKind::kCount> searches_;

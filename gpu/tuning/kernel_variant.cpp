@@ -84,16 +84,20 @@ Result<KernelVariant> parse_variant(std::string_view text) {
     return variant;
 }
 
-KernelVariant default_variant(const DeviceInfo& device, bool compute) {
+ChosenVariants default_variants(const DeviceInfo& device, bool compute) {
     KernelVariant variant{.compute = compute};
     if (!device.is_software)
-        return variant;
+        return ChosenVariants(variant);
     variant.packets = variant.deal_groups = compute;
     variant.refill = compute && device.can_refill();
     variant.branches = false;
     variant.register_words = kRegisterWords;
     variant.reads = TexelReads::Images;
-    return variant;
+    ChosenVariants variants(variant);
+    // Lanes that go alike end together, and taking up a ray means to go through the first portal.
+    for (const bool any_hit : {false, true})
+        variants[{.any_hit = any_hit, .portals = true, .coherent = true}].refill = false;
+    return variants;
 }
 
 std::vector<KernelVariant> neighbours(const KernelVariant& from, const DeviceInfo& device,
@@ -143,8 +147,8 @@ KernelVariant with_changes(KernelVariant base, const KernelVariant& from,
 
 bool can_read(const DeviceInfo& device, const KernelVariant& variant, uint32_t buffers,
               uint64_t buffer_bytes) {
-    const bool small = variant.reads != TexelReads::StorageBuffers ||
-                       buffer_bytes <= device.max_storage_bytes;
+    const bool small =
+        variant.reads != TexelReads::StorageBuffers || buffer_bytes <= device.max_storage_bytes;
     return small && buffers <= device.pool_buffers_by_reads[size_t(variant.reads)];
 }
 

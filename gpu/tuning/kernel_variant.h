@@ -19,13 +19,13 @@ namespace ovc {
 /// Certified answers are the same bits whichever variant a kernel is. Those that a device cannot
 /// run, and switches that mean nothing together, are left out by candidates().
 struct KernelVariant {
-    bool compute = true;          // false: the fragment kernel, which lacks the next four
-    uint32_t group_size = 64;     // invocations
-    bool packets = false;         // rays that go alike are taken two at a time
-    bool refill = false;          // a lane takes the next ray when its own is done
-    bool deal_groups = false;     // neighbouring groups go to different threads
-    bool branches = true;         // a step runs only the code for its kind of unit
-    uint32_t register_words = 0;  // of a stack in registers; 0: it is an array
+    bool compute = true;         // false: the fragment kernel, which lacks the next four
+    uint32_t group_size = 64;    // invocations
+    bool packets = false;        // rays that go alike are taken two at a time
+    bool refill = false;         // a lane takes the next ray when its own is done
+    bool deal_groups = false;    // neighbouring groups go to different threads
+    bool branches = true;        // a step runs only the code for its kind of unit
+    uint32_t register_words = 0; // of a stack in registers; 0: it is an array
     TexelReads reads = TexelReads::Textures;
 
     bool operator==(const KernelVariant&) const = default;
@@ -36,10 +36,6 @@ struct KernelVariant {
 /// Returns the variant of a text. Error: a word that is no switch, or switches that mean nothing
 /// together.
 Result<KernelVariant> parse_variant(std::string_view text);
-
-/// Returns the variant that is taken where nothing was measured: for llvmpipe what was measured
-/// there (docs/decisions/0011 and later), for all others what GPUs are made for.
-KernelVariant default_variant(const DeviceInfo& device, bool compute = true);
 
 /// Returns the variants that differ from `from` in one switch and that the device can run, the most
 /// promising first. kernels: whether the other kernel is one of them.
@@ -80,5 +76,9 @@ public:
 private:
     std::array<KernelVariant, RayKind::kCount> variants_{};
 };
+
+/// Returns the variants that are taken where nothing was measured: for llvmpipe what was measured
+/// there (docs/decisions/0011 and later), for all others what GPUs are made for.
+ChosenVariants default_variants(const DeviceInfo& device, bool compute = true);
 
 } // namespace ovc

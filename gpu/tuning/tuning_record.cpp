@@ -75,7 +75,8 @@ void TuningFile::keep(const TuningRecord& record) const {
     std::error_code failed;
     fs::create_directories(path_.parent_path(), failed);
     const fs::path temporary = path_.string() + format_text(".{}", getpid());
-    const bool written = bool(std::ofstream(temporary, std::ios::binary) << record.text() << std::flush);
+    const bool written =
+        bool(std::ofstream(temporary, std::ios::binary) << record.text() << std::flush);
     if (written)
         fs::rename(temporary, path_, failed);
     fs::remove(temporary, failed);

@@ -17,8 +17,9 @@ TEST(KernelVariants, SwitchesMeetInAllWays) {
     const auto there = [&](auto fits) { return std::ranges::any_of(variants, fits); };
     for (const bool a : {false, true})
         for (const bool b : {false, true}) {
-            EXPECT_TRUE(there(
-                [&](const ShaderConfig& c) { return c.compute == a && (c.reads == TexelReads::Images) == b; }));
+            EXPECT_TRUE(there([&](const ShaderConfig& c) {
+                return c.compute == a && (c.reads == TexelReads::Images) == b;
+            }));
             EXPECT_TRUE(there([&](const ShaderConfig& c) {
                 return (c.reads == TexelReads::StorageBuffers) == a && c.portals == b;
             }));

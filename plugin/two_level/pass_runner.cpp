@@ -259,19 +259,23 @@ bool PassRunner::measures() const {
            (choice == VariantChoice::Measured || choice == VariantChoice::Thorough);
 }
 
-ChosenVariants PassRunner::variants(const GlState& state) const {
+/// Returns the variants for the passes to come.
+ChosenVariants PassRunner::variants(GlState& state) const {
     if (tracing_.options.variant == VariantChoice::Given)
         return ChosenVariants(tracing_.options.given_variant);
-    if (measures())
-        return state.tuning.variants();
-    return ChosenVariants(default_variant(gl_.info(), tracing_.options.compute));
+    if (measures()) {
+        if (!state.tuning)
+            state.tuning = DeviceTuning::of(gl_.info(), log_);
+        return state.tuning->variants();
+    }
+    return default_variants(gl_.info(), tracing_.options.compute);
 }
 
 /// Measures variants with the first of the rays that a pass has traced.
-void PassRunner::tune(GlState& state, std::span<const RayState> rays, double kernel_seconds) {
+void PassRunner::tune(GlState& state, std::span<const RayState> rays, const PassCost& pass) {
     const bool thorough = tracing_.options.variant == VariantChoice::Thorough;
     const TuningLimits limits = thorough ? TuningLimits::thorough() : TuningLimits{};
-    const double rate = double(rays.size()) / std::max(kernel_seconds, 1e-9);
+    const double rate = double(rays.size()) / std::max(pass.kernel_seconds, 1e-9);
     const size_t some = std::clamp<size_t>(size_t(limits.trial_seconds * rate),
                                            std::min<size_t>(4096, rays.size()), rays.size());
     // A trial's rays end with a whole block, beyond which the next ones lie, which are none of it.
@@ -279,7 +283,7 @@ void PassRunner::tune(GlState& state, std::span<const RayState> rays, double ker
     sample.resize(whole_blocks(some));
     const RayKind kind = tracer_->ray_kind();
     TracerTrials trials(*tracer_, std::span(sample).first(some), log_);
-    state.tuning.after_pass(kind, rays.size(), kernel_seconds, limits, trials);
+    state.tuning->after_pass(kind, pass, limits, trials);
 }
 
 Result<size_t> PassRunner::pass(Batch& batch, std::span<const uint32_t> wanted,
@@ -307,7 +311,7 @@ Result<size_t> PassRunner::pass(Batch& batch, std::span<const uint32_t> wanted,
         seconds = watch.seconds();
         kernel_seconds = tracer_->kernel_seconds();
         if (alive && done && measures())
-            tune(state, std::span(batch.states).first(count), kernel_seconds);
+            tune(state, std::span(batch.states).first(count), {count, kernel_seconds, seconds});
     };
     gl_.run_beside(work, meanwhile, [this] { tracing_.watch.keeps_on(); });
     if (!alive)
