@@ -3,11 +3,13 @@
 // changes together that have gained.
 #include "gpu/tuning/device_tuning.h"
 
-#include "core/system/stopwatch.h"
 #include "core/text/format_text.h"
 #include "gpu/gl/program_store.h"
 
+#include <time.h>
+
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -56,6 +58,26 @@ bool DeviceTuning::is_due(const Search& search, size_t rays, const TuningLimits&
            record_.seconds < limits.seconds;
 }
 
+double DeviceTuning::work_seconds() const {
+    if (!device_.is_software)
+        return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch())
+            .count();
+    timespec time{}; // of this thread, which compiles; kernels run on others
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+    return double(time.tv_sec) + 1e-9 * double(time.tv_nsec) + trial_seconds_;
+}
+
+std::optional<VariantComparison> DeviceTuning::compare_with_default(RayKind kind,
+                                                                    const KernelVariant& variant,
+                                                                    const TuningLimits& limits,
+                                                                    VariantTrials& trials) {
+    return compare(defaults_[kind], variant, limits.rounds, [&](const KernelVariant& v) {
+        const std::optional<double> seconds = trials.time(v);
+        trial_seconds_ += seconds.value_or(0);
+        return seconds;
+    });
+}
+
 /// Whether there is time for another candidate. Half as much again is left, because a compiler's
 /// time and what else the machine does are not known before.
 bool DeviceTuning::is_time(const Search& search, const TuningLimits& limits) const {
@@ -71,11 +93,11 @@ void DeviceTuning::after_pass(RayKind kind, const PassCost& pass, const TuningLi
     search.compile_seconds = std::max(search.compile_seconds, pass.seconds - pass.kernel_seconds);
     if (!is_due(search, pass.rays, limits))
         return;
-    const Stopwatch watch;
-    const double before = search.seconds;
+    double counted = work_seconds();
     const auto count = [&] {
-        record_.seconds += before + watch.seconds() - search.seconds;
-        search.seconds = before + watch.seconds();
+        const double now = work_seconds(), more = now - std::exchange(counted, now);
+        record_.seconds += more;
+        search.seconds += more;
     };
     if (!search.begun)
         begin(kind, search, trials);
@@ -109,17 +131,16 @@ DeviceTuning::Next DeviceTuning::go_on(RayKind kind, Search& search, const Tunin
     if (search.next == search.candidates.size() || !is_time(search, limits))
         return Next::Decide;
     Candidate& candidate = search.candidates[search.next];
-    const Stopwatch watch;
+    const double before = work_seconds();
     if (!std::exchange(candidate.begun, true))
         trials.begin(candidate.variant);
     const bool is_ready = limits.in_one_go || trials.is_ready(candidate.variant);
     if (is_ready) {
-        candidate.result = compare(defaults_[kind], candidate.variant, limits.rounds,
-                                   [&](const KernelVariant& v) { return trials.time(v); });
+        candidate.result = compare_with_default(kind, candidate.variant, limits, trials);
         tell(kind, candidate.variant, candidate.result);
         ++search.next;
     }
-    candidate.seconds += watch.seconds();
+    candidate.seconds += work_seconds() - before;
     longest_step_ = std::max(longest_step_, candidate.seconds);
     return is_ready ? Next::Step : Next::Pass;
 }

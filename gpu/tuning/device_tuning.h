@@ -84,6 +84,13 @@ private:
         double seconds = 0; // that it has taken
     };
 
+    /// Seconds of work so far. On a software renderer these are of the processor, because what else
+    /// it does is no cost of measuring.
+    double work_seconds() const;
+    std::optional<VariantComparison> compare_with_default(RayKind kind,
+                                                          const KernelVariant& variant,
+                                                          const TuningLimits& limits,
+                                                          VariantTrials& trials);
     bool is_due(const Search& search, size_t rays, const TuningLimits& limits) const;
     bool is_time(const Search& search, const TuningLimits& limits) const;
     void begin(RayKind kind, Search& search, VariantTrials& trials);
@@ -104,7 +111,8 @@ private:
     TuningRecord record_;
     ChosenVariants variants_;
     std::array<Search, RayKind::kCount> searches_;
-    double longest_step_ = 0; // of one candidate
+    double longest_step_ = 0;  // of one candidate
+    double trial_seconds_ = 0; // of all trials' kernels
 };
 
 } // namespace ovc
