@@ -82,7 +82,8 @@ void give_answers(int first, Packet packet, Found found[OVC_PACKET], bool ended,
 #endif
         answer.w = found[k].best_hi == OVC_UNDECIDABLE ? OVC_FLAGGED : answer.w;
 #if OVC_COUNTS
-        answer.xy = uvec2(rounds, units_fetched);
+        answer.x = uint(rounds);
+        answer.y = uint(units_fetched);
 #endif
         give(first + k, ended ? answer : uvec4(0u, 0u, OVC_NO_LEAF, OVC_CAPPED));
     }
