@@ -22,13 +22,14 @@ def as_cpp(text):
     text = re.sub(r"\b(?:inout|out) (\w+) (\w+)\[(\w+)\]", r"Array<\1, \3>& \2", text)
     text = re.sub(r"\b(?:inout|out) (\w+) (\w+)", r"\1& \2", text)
     text = re.sub(r"\b(\w+)\[(\w+)\]\(", r"Array<\1, \2>(", text)
-    text = re.sub(r"\b(?!return\b|else\b)(\w+) (\w+)\[(\w+)\](?=[;,)]| =)", r"Array<\1, \3> \2", text)
+    text = re.sub(r"\b(?!return\b|else\b)(\w+) (\w+)\[(\w+)\](?=[;,)]| =)",
+                  r"Array<\1, \3> \2", text)
     text = re.sub(r"\.(xyz|xy|zw|zwxy)\b", r".\1()", text)
     text = re.sub(r"(?<![\w.])(\d+\.\d*(?:e[+-]?\d+)?|\d+e[+-]?\d+)(?![\w.])", r"\1f", text)
-    # A function of the kernel's may have a name of the standard library's.
-    text = re.sub(r"^struct Axes \{", "struct Axes {\n    bool operator==(const Axes&) const = default;",
+    # GLSL compares structures as they are.
+    return re.sub(r"^struct Axes \{",
+                  "struct Axes {\n    bool operator==(const Axes&) const = default;",
                   text, flags=re.MULTILINE)
-    return text
 
 
 def main():
