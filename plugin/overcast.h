@@ -209,8 +209,8 @@ typedef struct ovc_scene_config {
     ovc_read_function read_saved;
     void* read_user;
     /* Experimental. How the kernel goes about its work, which changes how fast it is and nothing of certified answers. NULL or "auto":
-     * what was measured to be the fastest on this device; where nothing was, it is measured beside the passes of a scene that has
-     * many rays, in 0.3 s at most, and kept for later processes. "default": what suits devices of this kind. "measure": all that
+     * what was measured to be the fastest on this device; where nothing was, a GPU is measured beside the passes of a scene that has
+     * many rays, in 0.3 s at most, which is kept for later processes. "default": what suits devices of this kind. "measure": all that
      * there is is measured with the first rays of each kind, in some seconds. Each measurement is told to the device's log. Else
      * a variant as the log names it. Copied by create_scene. With OVC_KERNEL_FRAGMENT or OVC_KERNEL_COMPUTE, and in
      * OVC_PRECISION_FAST, NULL means "default". For OVC_STRUCTURE_TWO_LEVEL. */

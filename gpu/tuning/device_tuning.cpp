@@ -6,8 +6,6 @@
 #include "core/text/format_text.h"
 #include "gpu/gl/program_store.h"
 
-#include <time.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -15,6 +13,11 @@
 #include <utility>
 
 namespace ovc {
+
+static double now() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch())
+        .count();
+}
 
 static double in_thousandths(double value) {
     return std::round(value * 1e3) / 1e3;
@@ -58,30 +61,18 @@ bool DeviceTuning::is_due(const Search& search, size_t rays, const TuningLimits&
            record_.seconds < limits.seconds;
 }
 
-double DeviceTuning::work_seconds() const {
-    if (!device_.is_software)
-        return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch())
-            .count();
-    timespec time{}; // of this thread, which compiles; kernels run on others
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-    return double(time.tv_sec) + 1e-9 * double(time.tv_nsec) + trial_seconds_;
-}
-
 std::optional<VariantComparison> DeviceTuning::compare_with_default(RayKind kind,
                                                                     const KernelVariant& variant,
                                                                     const TuningLimits& limits,
                                                                     VariantTrials& trials) {
-    return compare(defaults_[kind], variant, limits.rounds, [&](const KernelVariant& v) {
-        const std::optional<double> seconds = trials.time(v);
-        trial_seconds_ += seconds.value_or(0);
-        return seconds;
-    });
+    return compare(defaults_[kind], variant, limits.rounds,
+                   [&](const KernelVariant& v) { return trials.time(v); });
 }
 
-/// Whether there is time for another candidate. Half as much again is left, because a compiler's
+/// Whether there is time for another candidate. As much again is left, because a compiler's
 /// time and what else the machine does are not known before.
 bool DeviceTuning::is_time(const Search& search, const TuningLimits& limits) const {
-    const double step = 1.5 * std::max(longest_step_, search.compile_seconds);
+    const double step = 2 * std::max(longest_step_, search.compile_seconds);
     return record_.seconds + step <= limits.seconds &&
            (search.next == 0 || search.seconds + step <= limits.kind_seconds);
 }
@@ -93,9 +84,9 @@ void DeviceTuning::after_pass(RayKind kind, const PassCost& pass, const TuningLi
     search.compile_seconds = std::max(search.compile_seconds, pass.seconds - pass.kernel_seconds);
     if (!is_due(search, pass.rays, limits))
         return;
-    double counted = work_seconds();
+    double counted = now();
     const auto count = [&] {
-        const double now = work_seconds(), more = now - std::exchange(counted, now);
+        const double time = now(), more = time - std::exchange(counted, time);
         record_.seconds += more;
         search.seconds += more;
     };
@@ -131,7 +122,7 @@ DeviceTuning::Next DeviceTuning::go_on(RayKind kind, Search& search, const Tunin
     if (search.next == search.candidates.size() || !is_time(search, limits))
         return Next::Decide;
     Candidate& candidate = search.candidates[search.next];
-    const double before = work_seconds();
+    const double before = now();
     if (!std::exchange(candidate.begun, true))
         trials.begin(candidate.variant);
     const bool is_ready = limits.in_one_go || trials.is_ready(candidate.variant);
@@ -140,7 +131,7 @@ DeviceTuning::Next DeviceTuning::go_on(RayKind kind, Search& search, const Tunin
         tell(kind, candidate.variant, candidate.result);
         ++search.next;
     }
-    candidate.seconds += work_seconds() - before;
+    candidate.seconds += now() - before;
     longest_step_ = std::max(longest_step_, candidate.seconds);
     return is_ready ? Next::Step : Next::Pass;
 }

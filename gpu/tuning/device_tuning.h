@@ -84,9 +84,6 @@ private:
         double seconds = 0; // that it has taken
     };
 
-    /// Seconds of work so far. On a software renderer these are of the processor, because what else
-    /// it does is no cost of measuring.
-    double work_seconds() const;
     std::optional<VariantComparison> compare_with_default(RayKind kind,
                                                           const KernelVariant& variant,
                                                           const TuningLimits& limits,
@@ -111,8 +108,7 @@ private:
     TuningRecord record_;
     ChosenVariants variants_;
     std::array<Search, RayKind::kCount> searches_;
-    double longest_step_ = 0;  // of one candidate
-    double trial_seconds_ = 0; // of all trials' kernels
+    double longest_step_ = 0; // of one candidate
 };
 
 } // namespace ovc

@@ -253,17 +253,24 @@ size_t PassRunner::bring(std::span<const uint32_t> wanted) {
 }
 
 /// Fast answers are each kernel's own, so these must not depend on what was measured.
-bool PassRunner::measures() const {
+bool PassRunner::takes_measured() const {
     const VariantChoice choice = tracing_.options.variant;
     return tracing_.options.certify &&
            (choice == VariantChoice::Measured || choice == VariantChoice::Thorough);
+}
+
+/// A software renderer compiles a kernel on this thread, which takes longer than there is time for
+/// all, so it is measured by those alone who ask for it.
+bool PassRunner::measures() const {
+    return takes_measured() &&
+           (tracing_.options.variant == VariantChoice::Thorough || !gl_.info().is_software);
 }
 
 /// Returns the variants for the passes to come.
 ChosenVariants PassRunner::variants(GlState& state) const {
     if (tracing_.options.variant == VariantChoice::Given)
         return ChosenVariants(tracing_.options.given_variant);
-    if (measures()) {
+    if (takes_measured()) {
         if (!state.tuning)
             state.tuning = DeviceTuning::of(gl_.info(), log_);
         return state.tuning->variants();
@@ -277,7 +284,7 @@ void PassRunner::tune(GlState& state, std::span<const RayState> rays, const Pass
     const TuningLimits limits = thorough ? TuningLimits::thorough() : TuningLimits{};
     const double rate = double(rays.size()) / std::max(pass.kernel_seconds, 1e-9);
     const size_t some = std::clamp<size_t>(size_t(limits.trial_seconds * rate),
-                                           std::min<size_t>(4096, rays.size()), rays.size());
+                                           std::min<size_t>(32768, rays.size()), rays.size());
     // A trial's rays end with a whole block, beyond which the next ones lie, which are none of it.
     std::vector<RayState> sample(rays.begin(), rays.begin() + ptrdiff_t(some));
     sample.resize(whole_blocks(some));

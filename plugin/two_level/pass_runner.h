@@ -98,6 +98,7 @@ private:
     void close();
     void bring_first(BuildProgress* progress);
     Moved move_in(std::span<const uint32_t> wanted);
+    bool takes_measured() const;
     bool measures() const;
     ChosenVariants variants(GlState& state) const;
     void tune(GlState& state, std::span<const RayState> rays, const PassCost& pass);

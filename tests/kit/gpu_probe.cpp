@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Measures what a device does besides tracing: how large a pool it gives, how fast pages move to
 // it, and whether they move while a pass runs. Prints one JSON object.
-// usage: gpu_probe [SECONDS]     SECONDS: about how long it may take; default 20
+// usage: gpu_probe [SECONDS [DEVICE]]     SECONDS: about how long it may take; default 20
 #include "core/system/stopwatch.h"
 #include "core/text/format_text.h"
 #include "gpu/gl/gl_check.h"
@@ -130,11 +130,11 @@ Result<std::string> overlap(GlState& state, const DeviceInfo& device, double sec
             return done ? one.seconds() : 1e9;
         };
         first = round == 0 ? traced(false) : first;
-        pass = std::min(pass, traced(false));
         const Stopwatch moving;
         (*tracer)->bring((*tracer)->missing());
         glFinish();
         move = std::min(move, moving.seconds());
+        pass = std::min(pass, traced(false)); // through the same pages as the next
         both = std::min(both, traced(true));
     }
     return format_text("{\"rays\": {}, \"first_pass_seconds\": {}, \"pass_seconds\": {}, "
@@ -152,8 +152,8 @@ std::vector<uint64_t> pool_sizes(const DeviceInfo& device) {
     return sizes;
 }
 
-int probe(double seconds) {
-    Result<std::unique_ptr<GlThread>> gl = GlThread::start("", {});
+int probe(double seconds, const char* name) {
+    Result<std::unique_ptr<GlThread>> gl = GlThread::start(name, {});
     if (!gl) {
         std::fprintf(stderr, "gpu_probe: %s\n", gl.error().message.c_str());
         return 1;
@@ -183,5 +183,5 @@ int probe(double seconds) {
 
 int main(int count, char** arguments) {
     const double seconds = count > 1 ? std::atof(arguments[1]) : 20;
-    return ovc::probe(seconds > 0 ? seconds : 20);
+    return ovc::probe(seconds > 0 ? seconds : 20, count > 2 ? arguments[2] : "");
 }
