@@ -5,8 +5,11 @@
 
 #include "gpu/gl/gl_object.h"
 #include "gpu/page/residency.h"
+#include "gpu/trace/gl_staging.h"
 
 #include <cstdint>
+#include <memory>
+#include <utility>
 #include <vector>
 
 namespace ovc {
@@ -36,10 +39,22 @@ public:
     void bind(TexelReads reads) const;
 
 private:
+    /// Pages go through it to buffers of the driver's own, so that writing one waits for no pass.
+    struct Staged {
+        GlStaging memory;
+        StagingRing ring;
+
+        Staged(size_t bytes, std::vector<GLuint> buffers)
+            : memory(bytes, std::move(buffers)), ring(memory) {}
+    };
+    void stage();
+
     PoolLayout layout_;
     uint64_t begin_;
+    bool takes_host_pages_;
     std::vector<gl::Buffer> buffers_;
     std::vector<gl::BufferTexture> texels_;
+    std::unique_ptr<Staged> staged_; // null: pages are written to the buffers themselves
     Residency residency_;
 };
 

@@ -39,11 +39,12 @@ std::string allocate(uint64_t bytes, const DeviceInfo& device) {
     const PoolLayout layout{bytes, device.max_buffer_texels * sizeof(uvec4)};
     std::string error = "null";
     {
-        const Pool pool(ledger, layout, 1);
+        Pool pool(ledger, layout, 1);
         const std::vector<uvec4> page(4096);
         if (const Result<Done> made = check_gl("allocating"); !made || ledger.refused) {
             error = "\"the driver refuses\"";
         } else {
+            pool.show();
             pool.upload(0, page);
             pool.upload(bytes - 4096 * sizeof(uvec4), page);
             glFinish();
@@ -60,7 +61,8 @@ std::string upload(uint64_t page_bytes, double seconds, const DeviceInfo& device
     const uint64_t pool_bytes = std::max<uint64_t>(128 << 20, page_bytes);
     ledger.budget = pool_bytes;
     ledger.takes_host_pages = device.takes_host_pages;
-    const Pool pool(ledger, {pool_bytes, device.max_buffer_texels * sizeof(uvec4)}, 1);
+    Pool pool(ledger, {pool_bytes, device.max_buffer_texels * sizeof(uvec4)}, 1);
+    pool.show();
     const std::vector<uvec4> page(page_bytes / sizeof(uvec4), uvec4(7));
     pool.upload(0, page);
     glFinish();
