@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pool: the fixed number of GPU bytes that pages live in. It consists of as many buffers as it
-// takes, allocated once and filled by sub-buffer updates. No page lies in two buffers.
+// takes, allocated once and filled page by page. No page lies in two buffers.
 #pragma once
 
 #include "gpu/gl/gl_object.h"
