@@ -8,20 +8,20 @@ namespace ovc {
 static constexpr size_t kAlignment = 64; // bytes: a cache line, and a unit of a page
 
 StagingRing::~StagingRing() {
-    if (!flights_.empty())
-        driver_.wait(flights_.back().fence); // the driver may still read the memory
+    if (!pending_.empty())
+        driver_.wait(pending_.back().fence); // the driver may still read the memory
 }
 
-/// Waits for the flights that lie there. Those before them are over as well then.
+/// Waits for the copies from there. Those before them are over as well then.
 void StagingRing::make_room(size_t begin, size_t end) {
     size_t over = 0;
-    for (size_t i = 0; i < flights_.size(); ++i)
-        if (flights_[i].begin < end && begin < flights_[i].end)
+    for (size_t i = 0; i < pending_.size(); ++i)
+        if (pending_[i].begin < end && begin < pending_[i].end)
             over = i + 1;
     if (over == 0)
         return;
-    driver_.wait(flights_[over - 1].fence);
-    flights_.erase(flights_.begin(), flights_.begin() + ptrdiff_t(over));
+    driver_.wait(pending_[over - 1].fence);
+    pending_.erase(pending_.begin(), pending_.begin() + ptrdiff_t(over));
 }
 
 void StagingRing::write(size_t bytes, uint32_t buffer, uint64_t to,
@@ -32,7 +32,7 @@ void StagingRing::write(size_t bytes, uint32_t buffer, uint64_t to,
     make_room(begin, begin + bytes);
     fill(memory.subspan(begin, bytes));
     driver_.copy(begin, bytes, buffer, to);
-    flights_.push_back({begin, begin + bytes, driver_.fence()});
+    pending_.push_back({begin, begin + bytes, driver_.fence()});
     next_ = (begin + bytes + kAlignment - 1) / kAlignment * kAlignment;
 }
 

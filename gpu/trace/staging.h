@@ -45,7 +45,7 @@ public:
 
 private:
     /// Bytes from `begin` to before `end` that the driver may still copy from.
-    struct Flight {
+    struct Pending {
         size_t begin;
         size_t end;
         uint64_t fence;
@@ -54,7 +54,7 @@ private:
     void make_room(size_t begin, size_t end);
 
     StagingDriver& driver_;
-    std::deque<Flight> flights_; // the oldest first
+    std::deque<Pending> pending_; // the oldest first
     size_t next_ = 0;
 };
 
