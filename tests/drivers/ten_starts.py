@@ -22,9 +22,13 @@ TRIED = re.compile(r"kernel variant tried for (.*): (\S+): ([\d.]+) times")
 CHOSEN = re.compile(r"kernel variant for (.*?): (\S+?)(, the default)?$", re.MULTILINE)
 
 
+# It ends with the process that began it, however that ends.
+SPIN = "import os\nparent = os.getppid()\nwhile os.getppid() == parent: pass"
+
+
 @contextlib.contextmanager
 def busy(count):
-    spinners = [subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in range(count)]
+    spinners = [subprocess.Popen([sys.executable, "-c", SPIN]) for _ in range(count)]
     try:
         yield
     finally:
@@ -56,6 +60,7 @@ def main():
         folder = pathlib.Path(name)
         for start in range(asked.starts):
             told = run(overcast, folder / f"tune-{start}", "devices", "--tune")
+            print(f"start {start} has measured", flush=True)
             for kind, variant, ratio in TRIED.findall(told):
                 tables.setdefault(kind, {}).setdefault(variant, []).append(float(ratio))
             choices += [(start, kind, variant, bool(default))
