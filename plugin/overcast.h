@@ -224,6 +224,13 @@ typedef struct ovc_scene_config {
     double rank_timeout;  /* seconds: a rank that gives no word for so long is lost, and calls fail. 0: 60 */
     const ovc_ray* sample; /* sample_rays of them, such as will be traced, or NULL: leaves are shared out by them. Read during commit */
     uint64_t sample_rays;
+    /* Experimental. How the kernel goes about its work, which changes how fast it is and nothing of certified answers. NULL or "auto":
+     * what was measured to be the fastest on this device; where nothing was, a GPU is measured beside the passes of a scene that has
+     * many rays, in 0.3 s at most, which is kept for later processes. "default": what suits devices of this kind. "measure": all that
+     * there is is measured with the first rays of each kind, in some seconds. Each measurement is told to the device's log. Else
+     * a variant as the log names it. Copied by create_scene. With OVC_KERNEL_FRAGMENT or OVC_KERNEL_COMPUTE, and in
+     * OVC_PRECISION_FAST, NULL means "default". For OVC_STRUCTURE_TWO_LEVEL. */
+    const char* kernel_variant;
 } ovc_scene_config;
 
 typedef enum ovc_mesh_flags {

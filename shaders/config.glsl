@@ -67,17 +67,31 @@
 #ifndef OVC_DEAL_GROUPS
 #define OVC_DEAL_GROUPS 1
 #endif
-// 1: pages, portals and rays are read by imageLoad (inlined on llvmpipe, 5 % faster); 0: by
-// texelFetch.
-#ifndef OVC_BUFFER_IMAGES
-#define OVC_BUFFER_IMAGES 1
+// How pages, portals and rays are read. 0: by texelFetch; 1: by imageLoad (inlined on llvmpipe, 5 %
+// faster); 2: from storage buffers. OVC_TEXELS declares such texels under a name of their own.
+#ifndef OVC_READS
+#define OVC_READS 1
 #endif
-#if OVC_BUFFER_IMAGES
-#define OVC_TEXELS(number) layout(rgba32ui, binding = number) uniform readonly restrict uimageBuffer
+#if OVC_READS == 2
+#define OVC_TEXELS(number, block) \
+    layout(std430, binding = number) readonly restrict buffer block { uvec4 words[]; }
+#define OVC_TEXEL(texels, i) texels.words[i]
+#elif OVC_READS == 1
+#define OVC_TEXELS(number, block) \
+    layout(rgba32ui, binding = number) uniform readonly restrict uimageBuffer
 #define OVC_TEXEL(texels, i) imageLoad(texels, i)
 #else
-#define OVC_TEXELS(number) layout(binding = number) uniform usamplerBuffer
+#define OVC_TEXELS(number, block) layout(binding = number) uniform usamplerBuffer
 #define OVC_TEXEL(texels, i) texelFetch(texels, i)
+#endif
+// Invocations in a work group of the compute kernel: OVC_MAX_GROUP_SIZE or a part of it.
+#ifndef OVC_GROUP_SIZE
+#define OVC_GROUP_SIZE 64
+#endif
+// 1: instead of further candidates an answer tells how many rounds its ray took, and how many units
+// were fetched for it; for gpu/warp, and not with ray refill.
+#ifndef OVC_COUNTS
+#define OVC_COUNTS 0
 #endif
 // A ray's loops end after so many rounds and report it, before a driver ends them silently.
 #ifndef OVC_MAX_ROUNDS

@@ -134,8 +134,9 @@
 #define OVC_BINDING_STATE 3
 #define OVC_BINDING_SCENE 6
 
-// Invocations in a work group of the compute kernel. A row of rays is a multiple of it.
-#define OVC_GROUP_SIZE 64
+// Max invocations in a work group of the compute kernel. A block of rays is a multiple of it, also
+// where an invocation takes two rays.
+#define OVC_MAX_GROUP_SIZE 128
 // Where groups are dealt out (config.glsl): the number of groups that stay together, and the number
 // of slices into which the others are dealt.
 #define OVC_DEALT_GROUPS 4

@@ -7,14 +7,14 @@ layout(r32ui, binding = OVC_BINDING_ACTIVE) uniform writeonly restrict uimageBuf
 void mark_active(int leaf) { imageStore(active_leaves, leaf, uvec4(1u)); }
 #endif
 
-OVC_TEXELS(OVC_BINDING_POOL) pool[OVC_POOL_BUFFERS];
+OVC_TEXELS(OVC_BINDING_POOL, PoolTexels) pool[OVC_POOL_BUFFERS];
 
 #define OVC_UNIT_OF(number, at) \
     Unit(OVC_TEXEL(pool[number], at), OVC_TEXEL(pool[number], at + 1), \
          OVC_TEXEL(pool[number], at + 2), OVC_TEXEL(pool[number], at + 3))
 
 #if OVC_POOL_BUFFERS == 1
-Unit unit_at(int unit) { return OVC_UNIT_OF(0, unit * OVC_UNIT_TEXELS); }
+Unit unit_at(int unit) { return counted(OVC_UNIT_OF(0, unit * OVC_UNIT_TEXELS)); }
 #else
 // Each buffer is asked whether the unit is its own, because GLSL lets no two lanes read different
 // buffers at once. The calls are written out, because a loop would count among those that llvmpipe
@@ -25,6 +25,6 @@ Unit unit_at(int unit) {
     Unit found;
 #define OVC_FROM_BUFFER(number) if (own == number) found = OVC_UNIT_OF(number, at);
     OVC_EACH_BUFFER(OVC_FROM_BUFFER)
-    return found;
+    return counted(found);
 }
 #endif

@@ -3,7 +3,7 @@
 // doubles, from the ray in the world (docs/design/numerics.md, "Frames").
 
 #if OVC_PORTALS
-OVC_TEXELS(OVC_BINDING_PORTALS) portals;
+OVC_TEXELS(OVC_BINDING_PORTALS, PortalTexels) portals;
 uvec4 portal_texel(int i) { return OVC_TEXEL(portals, i); }
 
 dvec2 doubles_of(uvec4 words) { return dvec2(packDouble2x32(words.xy), packDouble2x32(words.zw)); }

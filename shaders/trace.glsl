@@ -63,7 +63,7 @@ bool take_rays(int first, Tree tree, out Packet packet, out Found found[OVC_PACK
 }
 #endif
 
-void give_answers(int first, Packet packet, Found found[OVC_PACKET], bool ended) {
+void give_answers(int first, Packet packet, Found found[OVC_PACKET], bool ended, int rounds) {
     for (int k = 0; k < OVC_PACKET; ++k) {
         uvec4 answer = answer_of(found[k], packet.any_hit[k], OVC_NO_LEAF);
 #if OVC_MAY_WAIT
@@ -81,6 +81,10 @@ void give_answers(int first, Packet packet, Found found[OVC_PACKET], bool ended)
             answer.xy = uvec2(floatBitsToUint(t), packUnorm2x16(barycentric(found[k])));
 #endif
         answer.w = found[k].best_hi == OVC_UNDECIDABLE ? OVC_FLAGGED : answer.w;
+#if OVC_COUNTS
+        answer.x = uint(rounds);
+        answer.y = uint(units_fetched);
+#endif
         give(first + k, ended ? answer : uvec4(0u, 0u, OVC_NO_LEAF, OVC_CAPPED));
     }
 }
@@ -123,7 +127,7 @@ void trace_once(int ray) {
         ended = ended || (rounds >= look && are_hopeless(found));
         look = rounds >= look ? min(look + OVC_PATIENCE, OVC_MAX_ROUNDS) : look;
     } while (!ended && rounds < OVC_MAX_ROUNDS);
-    give_answers(ray, packet, found, ended && !d.lost);
+    give_answers(ray, packet, found, ended && !d.lost, rounds);
 }
 #else
 // Rounds between two looks at which lanes have an answer or have come to a portal; more if taking
@@ -156,7 +160,7 @@ void trace_with_refill(int begin, int end) {
         bool ready = ended || enough;
         uint ready_lanes = uint(ballotARB(ready));
         if (ready) {
-            give_answers(ray, packet, found, ended && !d.lost);
+            give_answers(ray, packet, found, ended && !d.lost, rounds);
             ray = next + bitCount(ready_lanes & lanes_before) * OVC_PACKET;
             start(d, tree);
             d.done = !take_rays(ray, tree, packet, found);

@@ -8,4 +8,15 @@ struct Unit {
     uvec4 w;
 };
 
+// Counts what is fetched for the ray, where anybody asks.
+#if OVC_COUNTS
+int units_fetched = 0;
+Unit counted(Unit unit) {
+    ++units_fetched;
+    return unit;
+}
+#else
+#define counted(unit) unit
+#endif
+
 bool is_pair(Unit unit) { return int(unit.w.w) < 0; }

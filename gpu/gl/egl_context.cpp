@@ -9,6 +9,7 @@
 #include "gpu/gl/gl.h"
 #include "gpu/gl/gl_libraries.h"
 #include "gpu/gl/requirements.h"
+#include "gpu/gl/texel_reads.h"
 #include "gpu/gl/workarounds.h"
 #include "shaders/layout.h"
 
@@ -126,23 +127,38 @@ uint64_t free_memory() {
     return kib > 0 ? uint64_t(kib) * 1024 : kSoftwareMemory;
 }
 
-/// Returns how many buffers both kernels can read: as images on a software renderer, else as
-/// textures (ShaderConfig::buffer_images).
-uint32_t max_pool_buffers(bool as_images) {
-    using Limits = std::array<GLenum, 3>;
-    const Limits limits =
-        as_images ? Limits{GL_MAX_COMPUTE_IMAGE_UNIFORMS, GL_MAX_FRAGMENT_IMAGE_UNIFORMS,
-                           GL_MAX_IMAGE_UNITS}
-                  : Limits{GL_MAX_COMPUTE_TEXTURE_IMAGE_UNITS, GL_MAX_TEXTURE_IMAGE_UNITS,
-                           GL_MAX_COMBINED_TEXTURE_IMAGE_UNITS};
+GLint limit_of(GLenum limit) {
+    GLint value = 0;
+    glGetIntegerv(limit, &value);
+    return value;
+}
+
+/// Returns how many buffers of the pool both kernels can read in a way that has these limits.
+uint32_t max_pool_buffers(const std::array<GLenum, 3>& limits) {
     GLint least = std::numeric_limits<GLint>::max();
-    for (const GLenum limit : limits) {
-        GLint value = 0;
-        glGetIntegerv(limit, &value);
-        least = std::min(least, value);
-    }
+    for (const GLenum limit : limits)
+        least = std::min(least, limit_of(limit));
     constexpr GLint kMaxUnitNumberBuffers = int(1u << (31 - OVC_MAX_BUFFER_BITS));
-    return uint32_t(std::clamp(least - OVC_BINDING_POOL, 1, kMaxUnitNumberBuffers));
+    return uint32_t(std::clamp(least - OVC_BINDING_POOL, 0, kMaxUnitNumberBuffers));
+}
+
+/// Fills in how many buffers of the pool a kernel can read, for each of TexelReads.
+void describe_reads(DeviceInfo& info) {
+    info.pool_buffers_by_reads = {
+        max_pool_buffers({GL_MAX_COMPUTE_TEXTURE_IMAGE_UNITS, GL_MAX_TEXTURE_IMAGE_UNITS,
+                          GL_MAX_COMBINED_TEXTURE_IMAGE_UNITS}),
+        max_pool_buffers(
+            {GL_MAX_COMPUTE_IMAGE_UNIFORMS, GL_MAX_FRAGMENT_IMAGE_UNIFORMS, GL_MAX_IMAGE_UNITS}),
+        max_pool_buffers({GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS,
+                          GL_MAX_FRAGMENT_SHADER_STORAGE_BLOCKS,
+                          GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS})};
+    const TexelReads usual = info.is_software ? TexelReads::Images : TexelReads::Textures;
+    info.max_pool_buffers = std::max(1u, info.pool_buffers_by_reads[size_t(usual)]);
+    GLint64 bytes = 0;
+    glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &bytes);
+    info.max_storage_bytes = uint64_t(std::max<GLint64>(bytes, 0));
+    if (epoxy_has_gl_extension("GL_KHR_shader_subgroup"))
+        info.subgroup_lanes = uint32_t(std::max(limit_of(GL_SUBGROUP_SIZE_KHR), 0));
 }
 
 /// Adds to a sentence that ends without a device where the user learns more.
@@ -169,7 +185,7 @@ DeviceInfo describe() {
     info.max_texture_size = uint32_t(value);
     glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &value);
     info.max_buffer_texels = std::min(uint64_t(value), kMaxBufferTexels);
-    info.max_pool_buffers = max_pool_buffers(info.is_software);
+    describe_reads(info);
     glGetIntegerv(GL_TEXTURE_BUFFER_OFFSET_ALIGNMENT, &value);
     info.buffer_alignment = std::max<uint64_t>(uint64_t(value), 16);
     info.memory_bytes = info.is_software ? kSoftwareMemory : free_memory();

@@ -5,6 +5,7 @@
 #include "core/result.h"
 #include "core/system/log.h"
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -24,11 +25,20 @@ struct DeviceInfo {
     bool takes_host_pages = false;
     uint32_t max_texture_size = 0;
     uint64_t max_buffer_texels = 0;
-    uint32_t max_pool_buffers = 1;    // that a kernel can read beside its other inputs
+    uint32_t subgroup_lanes =
+        0; // as the driver reports it (GL_KHR_shader_subgroup); 0: it does not
+    uint32_t max_pool_buffers = 1; // that a kernel can read beside its other inputs
+    /// The same by TexelReads; what a variant may try.
+    std::array<uint32_t, 3> pool_buffers_by_reads{1, 1, 1};
+    uint64_t max_storage_bytes = 0;   // of one storage buffer
     uint64_t buffer_alignment = 16;   // bytes, of windows into a buffer
     uint64_t memory_bytes = 0;        // free, as reported; on a software renderer 1 GiB
     uint64_t shared_budget_bytes = 0; // of all scenes together; 0: each has a budget of its own
 
+    /// Whether ray refill works: its ballots have 32 bits.
+    bool can_refill() const {
+        return has_ballots && (is_software || (subgroup_lanes > 0 && subgroup_lanes <= 32));
+    }
     /// The bytes that a scene may use when the host names no budget for it: those that it shares
     /// with others, or the free memory less an eighth, for the driver and other programs.
     uint64_t default_budget_bytes() const {

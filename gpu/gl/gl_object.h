@@ -6,6 +6,7 @@
 #include "core/system/system_pages.h"
 #include "gpu/budget/ledger.h"
 #include "gpu/gl/gl.h"
+#include "gpu/gl/texel_reads.h"
 
 #include <cassert>
 #include <cstdint>
@@ -167,17 +168,27 @@ public:
     /// offset: a multiple of GL_TEXTURE_BUFFER_OFFSET_ALIGNMENT.
     void show(const Buffer& buffer, GLenum format, uint64_t offset, uint64_t bytes) {
         assert(offset + bytes <= buffer.bytes());
+        window_ = {buffer.id(), GLintptr(offset), GLsizeiptr(bytes)};
         glTextureBufferRange(id(), format, buffer.id(), GLintptr(offset), GLsizeiptr(bytes));
     }
     /// Binds the window's RGBA32UI texels for a kernel to read.
-    void bind(GLuint unit, bool as_image) const {
-        if (as_image)
+    void bind(GLuint unit, TexelReads reads) const {
+        if (reads == TexelReads::StorageBuffers)
+            glBindBufferRange(GL_SHADER_STORAGE_BUFFER, unit, window_.buffer, window_.offset,
+                              window_.bytes);
+        else if (reads == TexelReads::Images)
             glBindImageTexture(unit, id(), 0, GL_FALSE, 0, GL_READ_ONLY, GL_RGBA32UI);
         else
             glBindTextureUnit(unit, id());
     }
 
 private:
+    struct Window {
+        GLuint buffer = 0;
+        GLintptr offset = 0;
+        GLsizeiptr bytes = 0;
+    };
+    Window window_;
     Handle<delete_texture> handle_;
 };
 

@@ -123,8 +123,8 @@ void GlThread::serve() {
         changed_.notify_all();
         return;
     }
-    GlState state{std::move(*context), DebugOutput(log_), {}, gl::context_generation};
-    info_ = state.context.info();
+    info_ = context->info();
+    GlState state{std::move(*context), DebugOutput(log_), {}, {}, gl::context_generation};
     info_.shared_budget_bytes = budget_.bytes();
     started_ = Done{};
     changed_.notify_all();

@@ -29,13 +29,16 @@ struct DeviceLimits {
     LoopThreads* loops = nullptr;  // of the device; outlives it. Null: those of the process
 };
 
-/// The state that lives on the thread: the context, and the programs compiled in it, which are
-/// destroyed first.
+class DeviceTuning;
+
+/// The state that lives on the thread: the context, the programs compiled in it, which are
+/// destroyed first, and the variants that suit the device.
 struct GlState {
     EglContext context;
     DebugOutput debug;
     KernelCache kernels;
-    uint32_t generation; // of the context: GlThread::generation()
+    std::shared_ptr<DeviceTuning> tuning; // made by who first traces rays; null before
+    uint32_t generation;                  // of the context: GlThread::generation()
 };
 
 class GlThread {

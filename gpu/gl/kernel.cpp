@@ -13,7 +13,22 @@
 #include <regex>
 
 namespace ovc {
+
+/// A program that the driver may still be at work on.
+struct LinkingProgram {
+    struct Stage {
+        ShaderStage stage;
+        std::string source;
+        std::vector<std::string> files;
+    };
+    std::vector<Stage> stages;
+    std::vector<gl::Shader> shaders; // none if it comes from the store
+    gl::Program program;
+};
+
 namespace {
+
+using ExpandedStage = LinkingProgram::Stage;
 
 const ShaderSource* find_source(std::string_view name) {
     for (const ShaderSource& source : shader_sources())
@@ -64,41 +79,22 @@ std::string info_log(GLuint id, bool program) {
     return log;
 }
 
-struct ExpandedStage {
-    ShaderStage stage;
-    std::string source;
-    std::vector<std::string> files;
-};
-
-Result<gl::Shader> compile(const ExpandedStage& expanded) {
+gl::Shader begin_compile(const ExpandedStage& expanded) {
     gl::Shader shader(glCreateShader(expanded.stage.stage));
     const char* text = expanded.source.c_str();
     glShaderSource(shader.id(), 1, &text, nullptr);
     glCompileShader(shader.id());
-    GLint ok = GL_FALSE;
-    glGetShaderiv(shader.id(), GL_COMPILE_STATUS, &ok);
-    if (!ok)
-        return Error{
-            format_text("the driver does not compile {}: {}", expanded.stage.source,
-                        rewrite_log(info_log(shader.id(), /* program= */ false), expanded.files))};
     return shader;
 }
 
-Result<gl::Program> compile_and_link(std::span<const ExpandedStage> stages) {
-    gl::Program program(glCreateProgram());
-    for (const ExpandedStage& stage : stages) {
-        const Result<gl::Shader> shader = compile(stage);
-        if (!shader)
-            return shader.error();
-        glAttachShader(program.id(), shader->id());
-    }
-    glProgramParameteri(program.id(), GL_PROGRAM_BINARY_RETRIEVABLE_HINT, GL_TRUE);
-    glLinkProgram(program.id());
+Result<Done> check_compiled(const gl::Shader& shader, const ExpandedStage& expanded) {
     GLint ok = GL_FALSE;
-    glGetProgramiv(program.id(), GL_LINK_STATUS, &ok);
-    if (!ok)
-        return Error{"the driver does not link the kernel: " + info_log(program.id(), true)};
-    return program;
+    glGetShaderiv(shader.id(), GL_COMPILE_STATUS, &ok);
+    if (ok)
+        return Done{};
+    return Error{
+        format_text("the driver does not compile {}: {}", expanded.stage.source,
+                    rewrite_log(info_log(shader.id(), /* program= */ false), expanded.files))};
 }
 
 /// Returns the renderer's name as a comment (Workaround::RendererInSources).
@@ -113,6 +109,13 @@ bool compiles_fragment_shaders() {
     const auto* renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
     const std::string_view name = renderer ? renderer : "";
     return !needs(Workaround::NarrowFragments) || name.find("512 bits") == name.npos;
+}
+
+std::vector<std::string> sources_of(std::span<const ExpandedStage> stages) {
+    std::vector<std::string> sources;
+    for (const ExpandedStage& stage : stages)
+        sources.push_back(stage.source);
+    return sources;
 }
 
 } // namespace
@@ -144,21 +147,24 @@ std::string ShaderConfig::defines() const {
                        "#define OVC_REFILL {}\n"
                        "#define OVC_BRANCHES {}\n"
                        "#define OVC_DEAL_GROUPS {}\n"
-                       "#define OVC_BUFFER_IMAGES {}\n"
-                       "#define OVC_MAX_ROUNDS {}\n",
+                       "#define OVC_READS {}\n"
+                       "#define OVC_GROUP_SIZE {}\n"
+                       "#define OVC_MAX_ROUNDS {}\n"
+                       "#define OVC_COUNTS {}\n",
                        any_hit, certify, portals, far_triangles, may_wait, tell_active, loose_pairs,
                        pool_buffers, each_buffer, buffer_bits, stack_depth, stack_registers, packet,
-                       refill, branches, deal_groups, buffer_images, max_rounds);
+                       refill, branches, deal_groups, int(reads), group_size, max_rounds, counts);
 }
 
-Result<gl::Program> link_program(std::span<const ShaderStage> stages, const std::string& defines) {
+/// Does everything that asks nothing of the driver that it would have to wait for.
+static Result<LinkingProgram> begin_link(std::span<const ShaderStage> stages,
+                                         const std::string& defines) {
     const auto is_fragment = [](const ShaderStage& s) { return s.stage == GL_FRAGMENT_SHADER; };
     if (std::any_of(stages.begin(), stages.end(), is_fragment) && !compiles_fragment_shaders())
         return Error{
             "llvmpipe crashes on fragment shaders where LP_NATIVE_VECTOR_WIDTH is 512: take the "
             "compute kernel, or unset LP_NATIVE_VECTOR_WIDTH"};
-    std::vector<ExpandedStage> expanded;
-    std::vector<std::string> sources;
+    LinkingProgram linking{{}, {}, gl::Program(glCreateProgram())};
     for (const ShaderStage& stage : stages) {
         ExpandedStage next{stage, {}, {}};
         Result<std::string> source =
@@ -166,17 +172,41 @@ Result<gl::Program> link_program(std::span<const ShaderStage> stages, const std:
         if (!source)
             return source.error();
         next.source = std::move(*source);
-        sources.push_back(next.source);
-        expanded.push_back(std::move(next));
+        linking.stages.push_back(std::move(next));
     }
-    const ProgramStore store(ProgramStore::default_folder());
-    gl::Program kept(glCreateProgram());
-    if (store.load(sources, kept.id()))
-        return kept;
-    Result<gl::Program> program = compile_and_link(expanded);
-    if (program)
-        store.keep(sources, program->id());
-    return program;
+    const GLuint program = linking.program.id();
+    if (ProgramStore(ProgramStore::default_folder()).load(sources_of(linking.stages), program))
+        return linking;
+    for (const ExpandedStage& stage : linking.stages) {
+        linking.shaders.push_back(begin_compile(stage));
+        glAttachShader(program, linking.shaders.back().id());
+    }
+    glProgramParameteri(program, GL_PROGRAM_BINARY_RETRIEVABLE_HINT, GL_TRUE);
+    glLinkProgram(program);
+    return linking;
+}
+
+static Result<gl::Program> finish_link(LinkingProgram linking) {
+    if (linking.shaders.empty())
+        return std::move(linking.program);
+    for (size_t i = 0; i < linking.shaders.size(); ++i)
+        if (const Result<Done> ok = check_compiled(linking.shaders[i], linking.stages[i]); !ok)
+            return ok.error();
+    GLint ok = GL_FALSE;
+    glGetProgramiv(linking.program.id(), GL_LINK_STATUS, &ok);
+    if (!ok)
+        return Error{"the driver does not link the kernel: " +
+                     info_log(linking.program.id(), /* program= */ true)};
+    ProgramStore(ProgramStore::default_folder())
+        .keep(sources_of(linking.stages), linking.program.id());
+    return std::move(linking.program);
+}
+
+Result<gl::Program> link_program(std::span<const ShaderStage> stages, const std::string& defines) {
+    Result<LinkingProgram> linking = begin_link(stages, defines);
+    if (!linking)
+        return linking.error();
+    return finish_link(std::move(*linking));
 }
 
 Result<std::string> expand_shader(std::string_view name, const std::string& defines,
@@ -206,15 +236,45 @@ std::string rewrite_log(const std::string& log, const std::vector<std::string>& 
     return out;
 }
 
+KernelCache::KernelCache() = default;
+KernelCache::KernelCache(KernelCache&&) noexcept = default;
+KernelCache& KernelCache::operator=(KernelCache&&) noexcept = default;
+KernelCache::~KernelCache() = default;
+
 Result<GLuint> KernelCache::program(const ShaderConfig& config) {
     for (const Compiled& compiled : programs_)
         if (compiled.config == config)
             return compiled.program.id();
-    Result<gl::Program> program = link_program(stages_of(config), config.defines());
+    const auto begun = std::ranges::find(begun_, config, &Begun::config);
+    Result<gl::Program> program = Error{};
+    if (begun == begun_.end()) {
+        program = link_program(stages_of(config), config.defines());
+    } else {
+        program = finish_link(std::move(*begun->linking));
+        begun_.erase(begun);
+    }
     if (!program)
         return program.error();
     programs_.push_back({config, std::move(*program)});
     return programs_.back().program.id();
+}
+
+void KernelCache::begin(const ShaderConfig& config) {
+    if (std::ranges::find(programs_, config, &Compiled::config) != programs_.end() ||
+        std::ranges::find(begun_, config, &Begun::config) != begun_.end())
+        return;
+    if (Result<LinkingProgram> linking = begin_link(stages_of(config), config.defines()))
+        begun_.push_back({config, std::make_unique<LinkingProgram>(std::move(*linking))});
+}
+
+bool KernelCache::is_ready(const ShaderConfig& config) const {
+    const auto begun = std::ranges::find(begun_, config, &Begun::config);
+    if (begun == begun_.end() || begun->linking->shaders.empty() ||
+        !epoxy_has_gl_extension("GL_KHR_parallel_shader_compile"))
+        return true;
+    GLint complete = GL_TRUE;
+    glGetProgramiv(begun->linking->program.id(), GL_COMPLETION_STATUS_KHR, &complete);
+    return complete == GL_TRUE;
 }
 
 } // namespace ovc

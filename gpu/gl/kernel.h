@@ -6,6 +6,7 @@
 #include "gpu/gl/gl_object.h"
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -36,8 +37,10 @@ struct ShaderConfig {
     bool refill = false; // a lane takes the next packet when its own is done
     bool branches = false;
     bool deal_groups = true;
-    bool buffer_images = true;
+    TexelReads reads = TexelReads::Images;
+    uint32_t group_size = 64;         // of the compute kernel
     uint32_t max_rounds = 0x7fffffff; // of all loops of a ray
+    bool counts = false;              // answers tell rounds and units; not with refill
 
     bool operator==(const ShaderConfig&) const = default;
     /// All defines, one a line, in fixed order.
@@ -66,18 +69,35 @@ std::vector<ShaderStage> stages_of(const ShaderConfig& config);
 /// kept there. The context must be current. Error: the driver's log.
 Result<gl::Program> link_program(std::span<const ShaderStage> stages, const std::string& defines);
 
+struct LinkingProgram;
+
+/// Keeps programs. All calls need the context current.
 class KernelCache {
 public:
-    /// The program for `config`, compiled on first use. The context must be current. Error: the
-    /// driver's log.
+    KernelCache();
+    KernelCache(KernelCache&&) noexcept;
+    KernelCache& operator=(KernelCache&&) noexcept;
+    ~KernelCache();
+
+    /// The program for `config`, compiled on first use. Error: the driver's log.
     Result<GLuint> program(const ShaderConfig& config);
+    /// Has the driver begin to compile the program, beside other work if it can.
+    void begin(const ShaderConfig& config);
+    /// Whether program() would not wait for a program that begin() was called for, as far as the
+    /// driver tells (GL_KHR_parallel_shader_compile).
+    bool is_ready(const ShaderConfig& config) const;
 
 private:
     struct Compiled {
         ShaderConfig config;
         gl::Program program;
     };
+    struct Begun {
+        ShaderConfig config;
+        std::unique_ptr<LinkingProgram> linking;
+    };
     std::vector<Compiled> programs_;
+    std::vector<Begun> begun_;
 };
 
 } // namespace ovc

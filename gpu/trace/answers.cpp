@@ -66,15 +66,13 @@ void AnswerWords::fill_plane(int number, size_t rays, uint32_t word) const {
         GLsizeiptr(rays * sizeof(word)), GL_RED_INTEGER, GL_UNSIGNED_INT, &word);
 }
 
-void AnswerWords::dispatch(GLuint program, size_t rays, size_t packet,
-                           size_t packets_a_lane) const {
-    assert(kBlockRays % (OVC_GROUP_SIZE * packet) == 0);
+void AnswerWords::dispatch(GLuint program, size_t rays, size_t group_rays) const {
     glProgramUniform1i(program, OVC_LOCATION_PLANE, GLint(rays_));
     glBindImageTexture(OVC_BINDING_ANSWERS, texture_.id(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32UI);
-    const size_t all = whole_blocks(rays), group = OVC_GROUP_SIZE * packet * packets_a_lane;
+    const size_t all = whole_blocks(rays);
     fill_plane(0, all, OVC_MISS);
     glProgramUniform1i(program, OVC_LOCATION_RAYS, GLint(all));
-    glDispatchCompute(GLuint((all + group - 1) / group), 1, 1);
+    glDispatchCompute(GLuint((all + group_rays - 1) / group_rays), 1, 1);
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 

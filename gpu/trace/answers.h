@@ -69,8 +69,8 @@ private:
 class AnswerWords {
 public:
     AnswerWords(Ledger& ledger, uint32_t rays);
-    /// packet: rays that an invocation takes at a time; packets_a_lane: max packets of a lane.
-    void dispatch(GLuint program, size_t rays, size_t packet, size_t packets_a_lane) const;
+    /// group_rays: rays of a work group, or the max number with ray refill.
+    void dispatch(GLuint program, size_t rays, size_t group_rays) const;
     /// Reads the answers of the rays from `first_ray` on.
     void read(std::span<Answer> answers, size_t first_ray = 0);
 

@@ -33,9 +33,9 @@ protected:
         gl->run([&](GlState& state) {
             MemoryPlan plan = *plan_memory(64u << 20, gl->info());
             plan.pool_bytes = 4 * largest;
-            tracer =
-                std::move(*Tracer::create(plan, {.certify = true, .compute = GetParam()},
-                                          gl->info(), state.kernels, level1.bounds, pages, top));
+            tracer = std::move(
+                *Tracer::create(plan, {.variants = default_variants(gl->info(), GetParam())},
+                                gl->info(), state.kernels, level1.bounds, pages, top));
         });
         ASSERT_FALSE(tracer->all_resident());
     }

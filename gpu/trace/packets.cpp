@@ -32,20 +32,6 @@ bool near(const vec3& a, const vec3& b) {
     return std::max({apart.x, apart.y, apart.z}) < kNear;
 }
 
-template <class Sent>
-bool are_mostly_near(std::span<const Sent> rays) {
-    constexpr size_t kStep = 64;
-    size_t pairs = 0, together = 0;
-    for (size_t i = 0; i + 1 < rays.size(); i += kStep) {
-        const LocalRay &a = local(rays[i]), &b = local(rays[i + 1]);
-        if (a.t_end < 0 || b.t_end < 0)
-            continue;
-        pairs += 1;
-        together += near(a.dir, b.dir) && near(a.org, b.org);
-    }
-    return 2 * together >= pairs;
-}
-
 /// Whether both rays go into the same octant and farthest along the same axis, as the kernel sees
 /// it (shaders/triangle.glsl): -0 is not negative, and the largest component is 1 or -1.
 bool go_alike(const LocalRay& a, const LocalRay& b) {
@@ -111,11 +97,23 @@ std::optional<std::vector<Parted>> part(std::vector<Sent>& slots, size_t rays, s
 
 } // namespace
 
+bool coherent(size_t rays, FunctionRef<LocalRay(size_t)> ray_at) {
+    constexpr size_t kStep = 64;
+    size_t pairs = 0, together = 0;
+    for (size_t i = 0; i + 1 < rays; i += kStep) {
+        const LocalRay a = ray_at(i), b = ray_at(i + 1);
+        if (a.t_end < 0 || b.t_end < 0)
+            continue;
+        pairs += 1;
+        together += near(a.dir, b.dir) && near(a.org, b.org);
+    }
+    return 2 * together >= pairs;
+}
 bool coherent(std::span<const LocalRay> rays) {
-    return are_mostly_near(rays);
+    return coherent(rays.size(), [&](size_t i) { return rays[i]; });
 }
 bool coherent(std::span<const ResumedRay> rays) {
-    return are_mostly_near(rays);
+    return coherent(rays.size(), [&](size_t i) { return rays[i].ray; });
 }
 
 std::optional<std::vector<Parted>> part_packets(std::vector<LocalRay>& slots, size_t rays,

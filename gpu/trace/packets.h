@@ -3,6 +3,7 @@
 // (docs/decisions/0012). Decides which rays suit, and parts two that do not go alike.
 #pragma once
 
+#include "core/function_ref.h"
 #include "gpu/trace/local_ray.h"
 
 #include <cstddef>
@@ -18,6 +19,8 @@ inline constexpr uint32_t kPacketRays = 2;
 /// than 1/16, and they begin nearer to each other than 1/16 of the frame. Looks at a sample.
 bool coherent(std::span<const LocalRay> rays);
 bool coherent(std::span<const ResumedRay> rays);
+/// The same of rays that ray_at() computes, in the frame of the scene.
+bool coherent(size_t rays, FunctionRef<LocalRay(size_t)> ray_at);
 
 /// A ray of a pass that was moved, and its new slot behind all rays.
 struct Parted {

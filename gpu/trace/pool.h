@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pool: the fixed number of GPU bytes that pages live in. It consists of as many buffers as it
-// takes, allocated once and filled by sub-buffer updates. No page lies in two buffers.
+// takes, allocated once and filled page by page. No page lies in two buffers.
 #pragma once
 
 #include "gpu/gl/gl_object.h"
 #include "gpu/page/residency.h"
+#include "gpu/trace/gl_staging.h"
 
 #include <cstdint>
+#include <memory>
+#include <utility>
 #include <vector>
 
 namespace ovc {
@@ -32,14 +35,26 @@ public:
     /// Writes a word at `offset`, in bytes.
     void write(uint64_t offset, uint32_t word) const;
 
-    /// Binds all buffers for a kernel to read, as images or as textures.
-    void bind(bool as_images) const;
+    /// Binds all buffers for a kernel to read.
+    void bind(TexelReads reads) const;
 
 private:
+    /// Pages go through it to buffers of the driver's own, so that writing one waits for no pass.
+    struct Staged {
+        GlStaging memory;
+        StagingRing ring;
+
+        Staged(size_t bytes, std::vector<GLuint> buffers)
+            : memory(bytes, std::move(buffers)), ring(memory) {}
+    };
+    void stage();
+
     PoolLayout layout_;
     uint64_t begin_;
+    bool takes_host_pages_;
     std::vector<gl::Buffer> buffers_;
     std::vector<gl::BufferTexture> texels_;
+    std::unique_ptr<Staged> staged_; // null: pages are written to the buffers themselves
     Residency residency_;
 };
 

@@ -19,22 +19,21 @@ namespace {
 
 constexpr uint32_t kMaxBlocks = 2048; // half a million rays; a pass gains nothing from more
 constexpr uint32_t kMaxBlocksInSoftware = 512; // fewer, as llvmpipe clears the memory it allocates
-// Each word is a register (two with several buffers) and costs 1 % of the time; of a million rays
-// at the Stanford dragon thirty need more words (docs/decisions/0012).
-constexpr uint32_t kMaxStackWordsInSoftware = 8;
-constexpr uint32_t kMaxWordsInRegisters = 32; // Workaround::ShortRegisterStack
+constexpr uint32_t kMaxWordsInRegisters = 32;  // Workaround::ShortRegisterStack
 constexpr size_t kMaxLostShare =
     256; // if more than one ray in so many is lost, kernels go on longer
 // With ray refill: the max rays of a lane on average, if each thread still has some groups.
 constexpr size_t kLaneRays = 128;
 constexpr size_t kGroupsAThread = 4;
+constexpr size_t kLanesOfGpu = 65536;     // as many as a large GPU runs at once
 constexpr size_t kRayGrain = 1024;        // rays a task
 constexpr uint64_t kSmallestPool = 16384; // a page of some hundred triangles
 
-/// Returns how many packets each lane takes on average.
-size_t packets_a_lane(size_t rays, size_t packet) {
-    static_assert(kBlockRays % (OVC_GROUP_SIZE * kPacketRays) == 0); // no packet across groups
-    const size_t lanes = kGroupsAThread * thread_count() * OVC_GROUP_SIZE;
+/// Returns how many packets each lane takes on average, with ray refill.
+size_t packets_a_lane(size_t rays, size_t packet, const KernelVariant& variant, bool software) {
+    static_assert(kBlockRays % (OVC_MAX_GROUP_SIZE * kPacketRays) == 0); // no packet across groups
+    const size_t lanes =
+        software ? kGroupsAThread * thread_count() * variant.group_size : kLanesOfGpu;
     return std::clamp<size_t>(rays / packet / lanes, 1, kLaneRays / packet);
 }
 
@@ -82,17 +81,16 @@ Tracer::Tracer(std::unique_ptr<Ledger> ledger, const MemoryPlan& plan, const Pas
       kernels_(kernels),
       options_(options),
       page_data_(pages),
-      software_(device.is_software),
+      device_(device),
       top_(top),
       all_fit_(ovc::all_fit(pages, plan.pool(), top.room())),
       scene_(scene_leaf(bounds)),
       stack_depth_(stack_depth(top.depth)),
-      stack_words_(software_ ? std::min(stack_depth_, kMaxStackWordsInSoftware) : stack_depth_),
       max_slots_(plan.batch_rays + plan.parted_rays()),
       ray_buffer_(*ledger_, uint64_t(plan.batch_rays) * sizeof(RayState), "rays"),
       pool_(*ledger_, plan.pool(), pages.size(), top.room()) {
-    refills_ = device.has_ballots && software_ && options.compute;
-    if (options.compute)
+    variant_ = options.variants[RayKind{.portals = has_portals()}];
+    if (variant_.compute)
         words_.emplace(*ledger_, max_slots_);
     else
         pixels_.emplace(*ledger_, plan.batch_rays);
@@ -189,7 +187,7 @@ bool Tracer::update(const Box& bounds, std::span<const Page> pages, std::span<co
     scene_ = scene_leaf(bounds);
     all_fit_ = ovc::all_fit(pages, pool_.layout(), pool_.begin());
     stack_depth_ = stack_depth(top_.depth);
-    stack_words_ = software_ ? std::min(stack_depth_, kMaxStackWordsInSoftware) : stack_depth_;
+    long_stacks_ = false;
     upload_top_level();
     return bool(check_gl("updating pages"));
 }
@@ -236,6 +234,37 @@ Moved Tracer::bring(std::span<const uint32_t> wanted, const GivePage& give) {
     return moved;
 }
 
+/// Makes the buffer for answers of the kernel that the variant is of. No pass is under way.
+Result<Done> Tracer::make_answers() {
+    if (variant_.compute == words_.has_value())
+        return Done{};
+    words_.reset();
+    pixels_.reset();
+    if (variant_.compute)
+        words_.emplace(*ledger_, max_slots_);
+    else
+        pixels_.emplace(*ledger_, uint32_t(ray_buffer_.bytes() / sizeof(RayState)));
+    if (pixels_ && !pixels_->complete())
+        return Error{"the driver cannot render to RGBA32UI textures, which answers come back in"};
+    return check_gl("allocating the answers of another kernel");
+}
+
+bool Tracer::can_run(const KernelVariant& variant) const {
+    const PoolLayout& layout = pool_.layout();
+    uint64_t largest = ray_buffer_.bytes();
+    for (uint32_t i = 0; i < layout.count(); ++i)
+        largest = std::max(largest, layout.bytes_of(i));
+    return can_read(device_, variant, layout.count(), largest);
+}
+
+void Tracer::begin_to_compile(const KernelVariant& variant) {
+    kernels_.begin(shader_config(variant));
+}
+
+bool Tracer::is_ready(const KernelVariant& variant) const {
+    return kernels_.is_ready(shader_config(variant));
+}
+
 void Tracer::upload(std::span<const RayState> rays) {
     if (has_portals())
         upload_world(rays);
@@ -247,6 +276,11 @@ void Tracer::upload(std::span<const RayState> rays) {
 
 /// Uploads rays as they are, for a kernel that changes frames.
 void Tracer::upload_world(std::span<const RayState> rays) {
+    kind_.coherent = coherent(rays.size(), [&](size_t i) {
+        LocalTime unused;
+        return local_ray(scene_, rays[i].ray, OVC_NO_TRIANGLE, false, unused);
+    });
+    variant_ = options_.variants[kind_];
     glNamedBufferSubData(ray_buffer_.id(), 0,
                          GLsizeiptr(whole_blocks(rays.size()) * sizeof(RayState)), rays.data());
     if (options_.certify)
@@ -282,7 +316,9 @@ void Tracer::upload_local(std::span<const RayState> rays, std::vector<Sent>& sen
         convert(*top_.way_in);
     else
         convert(scene_);
-    if (takes_packets() && coherent(std::span<const Sent>(sent).first(rays.size())))
+    kind_.coherent = coherent(std::span<const Sent>(sent).first(rays.size()));
+    variant_ = options_.variants[kind_];
+    if (packs(variant_))
         if (auto parted = part_packets(sent, rays.size(), max_slots_)) {
             packets_ = true;
             parted_ = std::move(*parted);
@@ -306,12 +342,18 @@ void Tracer::come_back(std::span<Answer> answers) const {
     }
 }
 
+/// Returns how many words the kernel's stack has.
+uint32_t Tracer::stack_words(const KernelVariant& variant) const {
+    const bool is_short = variant.register_words > 0 && !long_stacks_;
+    return is_short ? std::min(stack_depth_, variant.register_words) : stack_depth_;
+}
+
 /// Returns the configuration of the kernel for the rays that were uploaded.
-ShaderConfig Tracer::shader_config() const {
+ShaderConfig Tracer::shader_config(const KernelVariant& variant) const {
     ShaderConfig config;
-    config.compute = options_.compute;
-    config.any_hit = any_hit_;
+    config.any_hit = kind_.any_hit;
     config.certify = options_.certify;
+    config.counts = options_.counts;
     config.portals = has_portals();
     config.far_triangles = !top_.far_triangles.empty();
     config.may_wait = may_wait();
@@ -319,17 +361,18 @@ ShaderConfig Tracer::shader_config() const {
     config.pool_buffers = pool_.layout().count();
     config.buffer_bits = pool_.layout().buffer_bits();
     config.loose_pairs = std::ranges::any_of(page_data_, &Page::has_loose_pairs);
-    config.stack_depth = stack_words_;
-    config.stack_registers =
-        software_ && (stack_words_ <= kMaxWordsInRegisters || !registers_lose_words_);
-    config.branches = !software_;
-    config.deal_groups = software_;
-    config.buffer_images = software_;
     if (counts_rounds_)
         config.max_rounds = kMaxCountedRounds;
-    if (packets_)
-        config.packet = kPacketRays;
-    config.refill = refills_;
+    config.compute = variant.compute;
+    config.stack_depth = stack_words(variant);
+    config.stack_registers = variant.register_words > 0 &&
+                             (config.stack_depth <= kMaxWordsInRegisters || !registers_lose_words_);
+    config.branches = variant.branches;
+    config.deal_groups = variant.deal_groups;
+    config.reads = variant.reads;
+    config.group_size = variant.group_size;
+    config.packet = packs(variant) ? kPacketRays : 1;
+    config.refill = variant.refill && !never_refills_;
     return config;
 }
 
@@ -337,47 +380,52 @@ Result<Done> Tracer::submit(std::span<const RayState> rays) {
     assert(!rays.empty() && whole_blocks(rays.size()) * sizeof(RayState) <= ray_buffer_.bytes());
     rays_sent_ = rays.size();
     slots_sent_ = rays.size();
-    any_hit_ = std::ranges::all_of(rays, [](const RayState& state) { return state.any_hit(); });
+    kind_ = {.any_hit = std::ranges::all_of(rays, &RayState::any_hit), .portals = has_portals()};
     packets_ = false;
     parted_.clear();
     upload(rays);
     kernel_seconds_ = 0;
+    if (const Result<Done> made = make_answers(); !made)
+        return made;
     return launch();
 }
 
 Result<Done> Tracer::launch() {
-    const ShaderConfig config = shader_config();
+    ShaderConfig config = shader_config(variant_);
+    config.packet = packets_ ? kPacketRays : 1; // not where too many rays had to be parted
     const Result<GLuint> program = kernels_.program(config);
     if (!program)
         return program.error();
 
     glPushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, 0, -1, "pass");
     glUseProgram(*program);
-    pool_.bind(config.buffer_images);
-    rays_.bind(OVC_BINDING_RAYS, config.buffer_images);
+    pool_.bind(config.reads);
+    rays_.bind(OVC_BINDING_RAYS, config.reads);
     if (has_portals())
-        portals_.bind(OVC_BINDING_PORTALS, config.buffer_images);
+        portals_.bind(OVC_BINDING_PORTALS, config.reads);
     if (config.tell_active)
         glBindImageTexture(OVC_BINDING_ACTIVE, active_.id(), 0, GL_FALSE, 0, GL_WRITE_ONLY,
                            GL_R32UI);
+    size_t group_rays = size_t(config.group_size) * config.packet;
+    if (config.refill)
+        group_rays *= packets_a_lane(slots_sent_, config.packet, variant_, device_.is_software);
     const Stopwatch watch;
-    if (software_)
+    if (device_.is_software)
         driver_threads_.start();
     else
         glBeginQuery(GL_TIME_ELAPSED, time_.id());
     if (words_)
-        words_->dispatch(*program, slots_sent_, config.packet,
-                         config.refill ? packets_a_lane(slots_sent_, config.packet) : 1);
+        words_->dispatch(*program, slots_sent_, group_rays);
     else
         pixels_->draw(rays_sent_);
-    if (!software_)
+    if (!device_.is_software)
         glEndQuery(GL_TIME_ELAPSED);
     glPopDebugGroup();
     if (finishes_passes_)
         glFinish();
     else
         glFlush();
-    if (software_)
+    if (device_.is_software)
         kernel_seconds_ += driver_threads_.seconds_each().value_or(watch.seconds());
     return check_gl("starting a pass");
 }
@@ -405,7 +453,7 @@ void Tracer::read(std::span<Answer> answers) {
         for (const auto& [ray, slot] : parted_)
             answers[ray] = parted_answers_[slot - rays_sent_];
     }
-    if (!software_)
+    if (!device_.is_software)
         kernel_seconds_ += time_.seconds();
 }
 
@@ -420,11 +468,9 @@ bool Tracer::lost_many(std::span<const Answer> answers) {
 /// Makes later kernels give up fewer rays: first by a stack for all words, then by giving each ray
 /// all the rounds there are. Returns false if they already give up as few as possible.
 bool Tracer::go_on_longer() {
-    if (stack_words_ < stack_depth_) {
-        stack_words_ = stack_depth_;
-        return true;
-    }
-    return std::exchange(refills_, false);
+    if (stack_words(variant_) < stack_depth_)
+        return long_stacks_ = true;
+    return variant_.refill && !std::exchange(never_refills_, true);
 }
 
 Result<Done> Tracer::collect(std::span<Answer> answers) {

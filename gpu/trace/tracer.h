@@ -14,6 +14,7 @@
 #include "gpu/trace/answers.h"
 #include "gpu/trace/packets.h"
 #include "gpu/trace/pool.h"
+#include "gpu/tuning/kernel_variant.h"
 #include "shaders/layout.h"
 
 #include <cstdint>
@@ -37,10 +38,11 @@ struct RayState {
 };
 static_assert(sizeof(RayState) == OVC_RAY_TEXELS * sizeof(uvec4));
 
-/// The precision and the kernel of all passes.
+/// The precision of all passes, and the variants of their kernels.
 struct PassOptions {
-    bool certify = true;  // false: fast precision
-    bool compute = false; // false: the fragment kernel; both give the same answers
+    bool certify = true; // false: fast precision
+    ChosenVariants variants;
+    bool counts = false; // answers tell rounds and units in the place of further()
 };
 
 /// How a budget is shared out: pages get the bytes that rays, answers and portals leave.
@@ -119,6 +121,17 @@ public:
     /// pages. Pages moved in after this call serve the next pass; they may be uploaded while this
     /// one runs. If all rays ask whether anything is hit, answers do not tell which triangle is.
     Result<Done> submit(std::span<const RayState> rays);
+    /// Takes these variants from now on.
+    void use(const ChosenVariants& variants) { options_.variants = variants; }
+    /// The kind of the rays that were submitted last.
+    RayKind ray_kind() const { return kind_; }
+
+    /// Whether the pool's buffers suit the variant.
+    bool can_run(const KernelVariant& variant) const;
+    /// Begins to compile the kernel of the last pass as another variant; is_ready() tells whether
+    /// that is over.
+    void begin_to_compile(const KernelVariant& variant);
+    bool is_ready(const KernelVariant& variant) const;
 
     /// Waits for the answers of the pass that was submitted. answers: as many as its rays.
     Result<Done> collect(std::span<Answer> answers);
@@ -141,13 +154,17 @@ private:
     bool resident(uint32_t leaf) const { return pool_.residency().resident(leaf); }
     Result<Done> set_up();
     bool has_portals() const { return !top_.portals.empty(); }
-    bool takes_packets() const { return software_ && options_.compute && !has_portals(); }
     /// Whether rays of the pass may have to wait for a page.
     bool may_wait() const { return !all_fit_; }
     void upload(std::span<const RayState> rays);
     void upload_world(std::span<const RayState> rays);
     void come_back(std::span<Answer> answers) const;
-    ShaderConfig shader_config() const;
+    ShaderConfig shader_config(const KernelVariant& variant) const;
+    Result<Done> make_answers();
+    bool packs(const KernelVariant& variant) const {
+        return variant.packets && kind_.coherent && !kind_.portals;
+    }
+    uint32_t stack_words(const KernelVariant& variant) const;
     Result<Done> launch();
     void read(std::span<Answer> answers);
     static bool lost_many(std::span<const Answer> answers);
@@ -162,8 +179,11 @@ private:
     KernelCache& kernels_;
     PassOptions options_;
     std::span<const Page> page_data_;
-    bool software_;
-    bool refills_ = false; // lanes take a next ray when theirs is done
+    const DeviceInfo device_;
+    RayKind kind_;               // of the rays of the pass
+    KernelVariant variant_;      // of the pass
+    bool long_stacks_ = false;   // eight words were too few
+    bool never_refills_ = false; // rays need all rounds that there are
     const bool counts_rounds_ = needs(Workaround::CountedRounds);
     const bool registers_lose_words_ = needs(Workaround::ShortRegisterStack);
     const bool finishes_passes_ = needs(Workaround::FinishedPass);
@@ -174,9 +194,7 @@ private:
     std::vector<ResumedRay> resumed_; // rays of the pass, if they do not
     std::vector<LocalTime> times_;    // of these rays, in fast precision
     uint32_t stack_depth_;            // words with which no ray is lost
-    uint32_t stack_words_;            // of the kernel
     uint32_t max_slots_;              // of a pass
-    bool any_hit_ = false;            // all rays of the pass ask whether anything is hit
     size_t rays_sent_ = 0;            // in the pass
     size_t slots_sent_ = 0;           // those and the slots of parted rays
     bool packets_ = false;            // the kernel takes rays two at a time

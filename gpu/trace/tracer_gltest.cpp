@@ -17,7 +17,8 @@ protected:
             gl->run([&](GlState&) { tracer.reset(); });
     }
 
-    void load(const Soup& soup, LoosePairs loose = LoosePairs{}, PassOptions options = {}) {
+    void load(const Soup& soup, LoosePairs loose = LoosePairs{}, bool compute = false) {
+        const PassOptions options{.variants = default_variants(gl->info(), compute)};
         Box bounds;
         const auto ids = hittable_triangles(soup, nullptr, &bounds);
         gl->run([&](GlState&) { tracer.reset(); });
@@ -114,7 +115,7 @@ TEST_F(KernelGl, BuffersOfTheDriverAndOfTheProcessAnswerAlike) {
         std::array<std::vector<uint32_t>, 2> prims;
         for (const bool host_pages : {false, true}) {
             with_host_pages = host_pages;
-            load(soup, {}, {.compute = compute});
+            load(soup, {}, compute);
             test::Random random(8);
             std::vector<Ray> rays;
             for (int i = 0; i < 2000; ++i)
@@ -250,7 +251,7 @@ TEST_F(KernelGl, RaysOfThousandsOfRoundsAreAnsweredByTheKernel) {
     for (int i = 0; i < kLayers; ++i)
         for (const vec3& corner : {vec3(0, 0, i), vec3(kLayers, 0, i), vec3(0, kLayers, i)})
             corners.push_back(corner / float(kLayers));
-    load(test::one_chunk(std::move(corners)), {}, {.compute = true});
+    load(test::one_chunk(std::move(corners)), {}, /* compute= */ true);
     // Rays 0 to 8191 go through all boxes and past all triangles, up and down in turn; the others
     // go past everything.
     std::vector<Ray> rays(40000, Ray{dvec3(5, 5, 0), 0, dvec3(1, 0, 0)});

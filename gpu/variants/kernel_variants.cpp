@@ -2,18 +2,17 @@
 #include "gpu/variants/kernel_variants.h"
 
 #include <optional>
-#include <set>
 #include <utility>
 
 namespace ovc {
 namespace {
 
-constexpr uint32_t kSwitches = 17;
+constexpr uint32_t kSwitches = 19;
 
 /// Returns the kernel whose switches have the values of these bits, or nothing where no kernel may
 /// have them together: packets and refill are the compute kernel's, packets go through no portals,
 /// far triangles lie behind some, and long stacks are arrays where a driver loses words of those in
-/// registers.
+/// registers. Storage buffers are no images.
 std::optional<ShaderConfig> kernel_of(uint32_t bits) {
     const auto take = [&] { return std::exchange(bits, bits >> 1) & 1; };
     ShaderConfig config;
@@ -32,9 +31,15 @@ std::optional<ShaderConfig> kernel_of(uint32_t bits) {
     config.refill = take();
     config.branches = take();
     config.deal_groups = take();
-    config.buffer_images = take();
+    const bool images = take(), storage = take();
+    config.reads = storage  ? TexelReads::StorageBuffers
+                   : images ? TexelReads::Images
+                            : TexelReads::Textures;
+    config.group_size = take() ? 128 : 64;
     config.max_rounds = take() ? kMaxCountedRounds : 0x7fffffff;
     if (!config.compute && (config.packet > 1 || config.refill || config.deal_groups))
+        return std::nullopt;
+    if ((images && storage) || (!config.compute && config.group_size != 64))
         return std::nullopt;
     if (config.portals ? config.packet > 1 : config.far_triangles)
         return std::nullopt;
@@ -48,11 +53,11 @@ uint32_t pair_number(uint32_t first, uint32_t second, uint32_t bits) {
     return ((first * kSwitches + second) * 2 + (bits >> first & 1)) * 2 + (bits >> second & 1);
 }
 
-uint32_t count_new(const std::set<uint32_t>& met, uint32_t bits) {
+uint32_t count_new(const std::vector<bool>& met, uint32_t bits) {
     uint32_t count = 0;
     for (uint32_t i = 0; i < kSwitches; ++i)
         for (uint32_t j = i + 1; j < kSwitches; ++j)
-            count += !met.contains(pair_number(i, j, bits));
+            count += !met[pair_number(i, j, bits)];
     return count;
 }
 
@@ -60,7 +65,7 @@ uint32_t count_new(const std::set<uint32_t>& met, uint32_t bits) {
 
 std::vector<ShaderConfig> kernel_variants() {
     std::vector<ShaderConfig> chosen;
-    std::set<uint32_t> met;
+    std::vector<bool> met(pair_number(kSwitches, 0, 0));
     for (;;) {
         uint32_t best = 0, best_count = 0;
         // An odd multiplier visits all values in a scattered order, so that ties fall far apart.
@@ -78,7 +83,7 @@ std::vector<ShaderConfig> kernel_variants() {
         chosen.push_back(*kernel_of(best));
         for (uint32_t i = 0; i < kSwitches; ++i)
             for (uint32_t j = i + 1; j < kSwitches; ++j)
-                met.insert(pair_number(i, j, best));
+                met[pair_number(i, j, best)] = true;
     }
 }
 

@@ -17,8 +17,12 @@ TEST(KernelVariants, SwitchesMeetInAllWays) {
     const auto there = [&](auto fits) { return std::ranges::any_of(variants, fits); };
     for (const bool a : {false, true})
         for (const bool b : {false, true}) {
-            EXPECT_TRUE(there(
-                [&](const ShaderConfig& c) { return c.compute == a && c.buffer_images == b; }));
+            EXPECT_TRUE(there([&](const ShaderConfig& c) {
+                return c.compute == a && (c.reads == TexelReads::Images) == b;
+            }));
+            EXPECT_TRUE(there([&](const ShaderConfig& c) {
+                return (c.reads == TexelReads::StorageBuffers) == a && c.portals == b;
+            }));
             EXPECT_TRUE(
                 there([&](const ShaderConfig& c) { return c.any_hit == a && c.certify == b; }));
             EXPECT_TRUE(there([&](const ShaderConfig& c) {

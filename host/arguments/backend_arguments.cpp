@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // --backend, --gpu-memory, --host-memory, --leaf-triangles, --leaves, --device, --precision,
-// --kernel, --ranks-own, --rank-timeout, --level1, --level1-build.
+// --kernel, --kernel-variant, --ranks-own, --rank-timeout, --level1, --level1-build.
 #include "host/arguments/backend_arguments.h"
 #include "core/text/suggestion.h"
 #include "host/arguments/arguments.h"
@@ -72,6 +72,11 @@ void BackendArguments::add_to(CLI::App& app, const char* host_memory_help) {
     app.add_option("--kernel", kernel, "auto, fragment or compute; they answer alike")
         ->group(group)
         ->type_name(choice_names(kKernels));
+    app.add_option("--kernel-variant", kernel_variant,
+                   "How the kernel works: auto (the fastest that was measured on the device), "
+                   "default, measure, or a variant that `overcast devices --tune` lists")
+        ->group(group)
+        ->type_name("NAME");
     add_ranks_own(app, ranks_own)->group(group);
     app.add_option("--rank-timeout", rank_timeout,
                    "Under mpirun, a rank that gives no word for so long is lost, and the job ends; "
@@ -96,13 +101,17 @@ Result<Done> BackendArguments::check_meaning(BackendKind kind) const {
                                             {"--leaves", &leaves},
                                             {"--device", &device},
                                             {"--precision", &precision},
-                                            {"--kernel", &kernel}})
+                                            {"--kernel", &kernel},
+                                            {"--kernel-variant", &kernel_variant}})
             if (!value->empty())
                 return Error{fmt::format("{} means nothing to the backend {}, which uses no GPU",
                                          option, backend)};
     if (structure_of(kind) != OVC_STRUCTURE_TWO_LEVEL && !host_memory.empty())
         return Error{fmt::format("--host-memory means nothing to the backend {}; two-level has it",
                                  backend)};
+    if (structure_of(kind) != OVC_STRUCTURE_TWO_LEVEL && !kernel_variant.empty())
+        return Error{fmt::format(
+            "--kernel-variant means nothing to the backend {}; two-level has it", backend)};
     if (kind != BackendKind::ThesisTwoLevel)
         for (const auto& [option, value] :
              {std::pair{"--level1", &level1}, {"--level1-build", &level1_build}})
@@ -194,6 +203,7 @@ Result<BackendOptions> BackendArguments::resolve() const {
     if (!kernel_choice)
         return kernel_choice.error();
     options.kernel = ovc_kernel(*kernel_choice);
+    options.kernel_variant = kernel_variant;
     if (const Result<Done> fine = resolve_ranks(options); !fine)
         return fine.error();
     const Result<size_t> level1_choice = parse_choice("--level1", level1, kLevels1);

@@ -34,6 +34,7 @@ struct BackendArguments {
     std::string device;
     std::string precision;
     std::string kernel;
+    std::string kernel_variant;
     std::string ranks_own;
     std::string rank_timeout;
     std::string level1;

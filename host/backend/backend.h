@@ -99,6 +99,7 @@ struct BackendOptions {
     std::string device;          // empty: the plugin chooses
     ovc_precision precision = OVC_PRECISION_CERTIFIED;
     ovc_kernel kernel = OVC_KERNEL_AUTO;
+    std::string kernel_variant;             // as in ovc_scene_config; empty: the plugin's default
     ovc_level1 level1 = OVC_LEVEL1_KD_TREE; // of ThesisTwoLevel, like the next
     ovc_level1_build level1_build = OVC_LEVEL1_BUILD_TOP_DOWN;
     bool tell_active = false; // counts pages for take_active(); two-level only

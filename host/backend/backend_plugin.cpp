@@ -391,6 +391,8 @@ Result<ovc_scene_config> config_of(const BackendOptions& options, const ovc_devi
     config.leaves = options.leaves;
     config.precision = options.precision;
     config.kernel = options.kernel;
+    if (!options.kernel_variant.empty())
+        config.kernel_variant = options.kernel_variant.c_str();
     config.structure = structure_of(options.kind);
     config.level1 = options.level1;
     config.level1_build = options.level1_build;

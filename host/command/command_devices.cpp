@@ -5,6 +5,7 @@
 #include "host/backend/plugin_loader.h"
 #include "host/command/command.h"
 #include "host/terminal/interrupt.h"
+#include "host/tuning/tune_device.h"
 
 #include <fmt/format.h>
 
@@ -14,6 +15,7 @@ namespace ovc {
 
 static constexpr const char* kDevicesExamples = R"(Examples:
   overcast devices
+  overcast devices --tune
   overcast render dragon.ply --device 1
   overcast render dragon.ply --device llvmpipe
 
@@ -38,10 +40,19 @@ class Devices final : public Subcommand {
 public:
     void add_to(CLI::App& app) override {
         app.description("Lists the devices that rays can be traced on, by number and name.");
+        app.add_flag("--tune", tunes_,
+                     "Measure all variants of the kernel on a device, show what each takes, and "
+                     "keep the fastest for later runs");
+        app.add_option("--device", device_, "Which one to measure; default: as render chooses")
+            ->type_name("NAME");
         app.footer(kDevicesExamples);
     }
 
     Result<int> run() override {
+        if (!device_.empty() && !tunes_)
+            return Error{"--device means nothing without --tune"};
+        if (tunes_)
+            return tune();
         const Result<const ovc_api*> api = load_plugin();
         if (!api)
             return api.error();
@@ -54,6 +65,18 @@ public:
             fmt::print("no devices; --backend cpu-kdtree traces on the CPU\n");
         return kExitOk;
     }
+
+private:
+    Result<int> tune() const {
+        const Result<Done> done = tune_device(device_, [](const std::string& line) {
+            fmt::print("{}\n", line);
+            std::fflush(stdout);
+        });
+        return done ? Result<int>(kExitOk) : done.error();
+    }
+
+    bool tunes_ = false;
+    std::string device_;
 };
 
 } // namespace

@@ -110,6 +110,7 @@ struct ovc_scene_t {
     ovc_device device = nullptr;
     ovc::Turn turn; // calls on one scene wait here
     ovc_scene_config config{sizeof(ovc_scene_config)};
+    std::string kernel_variant;            // what the config points to
     std::unique_ptr<ovc::LeafStore> store; // of a scene that need not fit into host memory
     std::map<ovc::CornerReader, const ovc::StoredCorners*> stored; // the store's meshes
     ovc::Soup soup;

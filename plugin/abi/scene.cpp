@@ -79,6 +79,10 @@ ovc_result create_scene(ovc_device device, const ovc_scene_config* config, ovc_s
         created->config = checked_config(config);
         // A config that no scene can have is refused now, before anything is added.
         check_config(created->config, device->gl->info());
+        if (const char* const variant = created->config.kernel_variant) {
+            created->kernel_variant = variant;
+            created->config.kernel_variant = created->kernel_variant.c_str();
+        }
         created->store = store_of(created->config);
         ++device->scenes;
         *scene = created.release();

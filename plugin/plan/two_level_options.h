@@ -6,6 +6,7 @@
 #include "core/result.h"
 #include "core/soup.h"
 #include "gpu/trace/tracer.h"
+#include "gpu/tuning/kernel_variant.h"
 #include "plugin/build/built_scene.h"
 #include "plugin/build/keep_pages.h"
 
@@ -15,6 +16,13 @@
 
 namespace ovc {
 
+enum class VariantChoice {
+    Default,  // what the device's kind suggests; `compute` says of which kernel
+    Measured, // what was measured on the device, or is measured beside the first rays
+    Thorough, // measures all that there is at the first rays of each kind, and keeps that
+    Given,
+};
+
 struct TwoLevelOptions {
     uint64_t budget_bytes = 0;   // 0: the device's default
     uint64_t leaf_triangles = 0; // 0: a tenth of the scene, or all where that is better
@@ -22,6 +30,9 @@ struct TwoLevelOptions {
     bool certify = true;         // false: fast precision, the kernel's own answers
     bool compute = false;        // true: the compute kernel, else the fragment kernel
     bool tell_active = false;    // passes mark the pages that rays are traced through
+    /// How the kernel's variant is chosen (docs/decisions/0032).
+    VariantChoice variant = VariantChoice::Default;
+    KernelVariant given_variant = {}; // VariantChoice::Given
     /// Whether pages move in beside a pass. Default: on a GPU alone, because a software renderer
     /// cannot do two things at once, and moving before a pass has ended moves some 20 % more.
     std::optional<bool> beside;

@@ -49,6 +49,9 @@ void check_config(const ovc_scene_config& config, const DeviceInfo& device) {
         refuse(format_text("{} does not tell which pages are active", name));
     if (config.kernel == OVC_KERNEL_COMPUTE)
         refuse(format_text("{} has no compute kernel", name));
+    if (config.kernel_variant)
+        refuse(format_text("{} has one kernel: kernel_variant is '{}', expected NULL", name,
+                           config.kernel_variant));
     if (config.structure == OVC_STRUCTURE_THESIS_TWO_LEVEL) {
         if (config.level1 == OVC_LEVEL1_GRID && config.level1_build != OVC_LEVEL1_BUILD_TOP_DOWN)
             refuse(format_text("{}: a grid is built top-down; it has no leaves to merge", name));

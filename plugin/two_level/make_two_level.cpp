@@ -11,6 +11,35 @@
 
 namespace ovc {
 
+/// Returns what the config says of the kernel's variant, which `given` receives if that is one.
+static Result<VariantChoice> variant_choice(const ovc_scene_config& config, KernelVariant& given) {
+    const std::string_view name = config.kernel_variant ? config.kernel_variant : "auto";
+    if (name == "default" || (name == "auto" && config.kernel != OVC_KERNEL_AUTO))
+        return VariantChoice::Default;
+    if (name == "auto")
+        return VariantChoice::Measured;
+    if (name == "measure")
+        return VariantChoice::Thorough;
+    const Result<KernelVariant> variant = parse_variant(name);
+    if (!variant)
+        return variant.error();
+    given = *variant;
+    return VariantChoice::Given;
+}
+
+static void check_variant(const ovc_scene_config& config) {
+    KernelVariant variant;
+    const Result<VariantChoice> choice = variant_choice(config, variant);
+    if (!choice)
+        throw Failure{OVC_ERROR_INVALID_ARGUMENT,
+                      "ovc_scene_config.kernel_variant: " + choice.error().message};
+    if (config.kernel != OVC_KERNEL_AUTO && *choice != VariantChoice::Default)
+        throw Failure{OVC_ERROR_INVALID_ARGUMENT,
+                      format_text("ovc_scene_config.kernel is {}, expected 0: kernel_variant '{}' "
+                                  "says which kernel it is",
+                                  config.kernel, config.kernel_variant)};
+}
+
 void check_two_level(const ovc_scene_config& config, const DeviceInfo& device) {
     if (config.structure != OVC_STRUCTURE_TWO_LEVEL)
         throw Failure{
@@ -22,6 +51,7 @@ void check_two_level(const ovc_scene_config& config, const DeviceInfo& device) {
         throw Failure{OVC_ERROR_INVALID_ARGUMENT,
                       "ovc_scene_config.level1 and level1_build mean nothing to two-level, whose "
                       "level 1 is a KD-tree: expected 0"};
+    check_variant(config);
     if (device.shared_budget_bytes && config.gpu_memory_bytes > device.shared_budget_bytes)
         throw Failure{OVC_ERROR_INVALID_ARGUMENT,
                       format_text("ovc_scene_config.gpu_memory_bytes is {}, but the scenes of the "
@@ -33,17 +63,16 @@ void check_two_level(const ovc_scene_config& config, const DeviceInfo& device) {
 }
 
 TwoLevelOptions two_level_options(const ovc_scene_config& config) {
-    return {config.gpu_memory_bytes,
-            config.leaf_triangles,
-            config.leaves,
-            config.precision != OVC_PRECISION_FAST,
-            config.kernel != OVC_KERNEL_FRAGMENT,
-            config.tell_active == 1,
-            {},
-            ~uint64_t(0),
-            0,
-            nullptr,
-            {static_cast<const std::byte*>(config.saved), size_t(config.saved_bytes)}};
+    TwoLevelOptions options{config.gpu_memory_bytes,
+                            config.leaf_triangles,
+                            config.leaves,
+                            config.precision != OVC_PRECISION_FAST,
+                            config.kernel != OVC_KERNEL_FRAGMENT,
+                            config.tell_active == 1};
+    options.saved = {static_cast<const std::byte*>(config.saved), size_t(config.saved_bytes)};
+    if (const auto choice = variant_choice(config, options.given_variant))
+        options.variant = *choice;
+    return options;
 }
 
 ovc_statistics TwoLevel::report() const {

@@ -7,6 +7,7 @@
 #include "core/text/format_text.h"
 #include "plugin/build/build_scene.h"
 #include "plugin/leaf_store/leaf_store.h"
+#include "plugin/two_level/tracer_trials.h"
 #include "plugin/two_level/waiting.h"
 
 #include <cassert>
@@ -90,16 +91,15 @@ Result<SharedBudget::Use> PassRunner::begin_use(BuildProgress* progress) {
 
 /// Makes the tracer, with a smaller pool where the driver has no room for the plan's.
 Result<Done> PassRunner::open(BuildProgress* progress) {
-    const PassOptions options{tracing_.options.certify, tracing_.options.compute};
     while (true) {
         Result<std::unique_ptr<Tracer>> made = Error{};
         gl_.run([&](GlState& state) {
             tracer_.reset();
             tracer_generation_ = state.generation;
             if (state.context.alive())
-                made = Tracer::create(plan_, options, gl_.info(), state.kernels,
-                                      tracing_.scene.level1.bounds, tracing_.scene.pages,
-                                      tracing_.scene.top);
+                made = Tracer::create(plan_, {tracing_.options.certify, variants(state)},
+                                      gl_.info(), state.kernels, tracing_.scene.level1.bounds,
+                                      tracing_.scene.pages, tracing_.scene.top);
             else
                 made = Error{"the GPU's context is lost", ErrorKind::DeviceLost};
         });
@@ -252,6 +252,47 @@ size_t PassRunner::bring(std::span<const uint32_t> wanted) {
     return moved.pages;
 }
 
+/// Fast answers are each kernel's own, so these must not depend on what was measured.
+bool PassRunner::takes_measured() const {
+    const VariantChoice choice = tracing_.options.variant;
+    return tracing_.options.certify &&
+           (choice == VariantChoice::Measured || choice == VariantChoice::Thorough);
+}
+
+/// A software renderer compiles a kernel on this thread, which takes longer than there is time for
+/// all, so it is measured by those alone who ask for it.
+bool PassRunner::measures() const {
+    return takes_measured() &&
+           (tracing_.options.variant == VariantChoice::Thorough || !gl_.info().is_software);
+}
+
+/// Returns the variants for the passes to come.
+ChosenVariants PassRunner::variants(GlState& state) const {
+    if (tracing_.options.variant == VariantChoice::Given)
+        return ChosenVariants(tracing_.options.given_variant);
+    if (takes_measured()) {
+        if (!state.tuning)
+            state.tuning = DeviceTuning::of(gl_.info(), log_);
+        return state.tuning->variants();
+    }
+    return default_variants(gl_.info(), tracing_.options.compute);
+}
+
+/// Measures variants with the first of the rays that a pass has traced.
+void PassRunner::tune(GlState& state, std::span<const RayState> rays, const PassCost& pass) {
+    const bool thorough = tracing_.options.variant == VariantChoice::Thorough;
+    const TuningLimits limits = thorough ? TuningLimits::thorough() : TuningLimits{};
+    const double rate = double(rays.size()) / std::max(pass.kernel_seconds, 1e-9);
+    const size_t some = std::clamp<size_t>(size_t(limits.trial_seconds * rate),
+                                           std::min<size_t>(32768, rays.size()), rays.size());
+    // A trial's rays end with a whole block, beyond which the next ones lie, which are none of it.
+    std::vector<RayState> sample(rays.begin(), rays.begin() + ptrdiff_t(some));
+    sample.resize(whole_blocks(some));
+    const RayKind kind = tracer_->ray_kind();
+    TracerTrials trials(*tracer_, std::span(sample).first(some), log_);
+    state.tuning->after_pass(kind, pass, limits, trials);
+}
+
 Result<size_t> PassRunner::pass(Batch& batch, std::span<const uint32_t> wanted,
                                 const std::function<void()>& meanwhile) {
     const size_t count = batch.rays.size();
@@ -261,12 +302,13 @@ Result<size_t> PassRunner::pass(Batch& batch, std::span<const uint32_t> wanted,
     Result<Done> done = Done{};
     bool alive = false;
     Moved moved;
-    double seconds = 0;
+    double seconds = 0, kernel_seconds = 0;
     const auto work = [&](GlState& state) {
         const Stopwatch watch;
         alive = is_ours(state);
         if (!alive)
             return;
+        tracer_->use(variants(state));
         done = tracer_->submit(std::span(batch.states).first(count));
         if (done)
             moved = move_in(wanted);
@@ -274,6 +316,9 @@ Result<size_t> PassRunner::pass(Batch& batch, std::span<const uint32_t> wanted,
             done = tracer_->collect(std::span(batch.answers).first(count));
         alive = state.context.alive(); // a dead context leaves anything in the answers
         seconds = watch.seconds();
+        kernel_seconds = tracer_->kernel_seconds();
+        if (alive && done && measures())
+            tune(state, std::span(batch.states).first(count), {count, kernel_seconds, seconds});
     };
     gl_.run_beside(work, meanwhile, [this] { tracing_.watch.keeps_on(); });
     if (!alive)
@@ -285,7 +330,7 @@ Result<size_t> PassRunner::pass(Batch& batch, std::span<const uint32_t> wanted,
     statistics.ray_visits += count;
     statistics.seconds_pass += seconds;
     seconds_a_ray_ = seconds / double(count);
-    statistics.seconds_kernel += tracer_->kernel_seconds();
+    statistics.seconds_kernel += kernel_seconds;
     statistics.pages_in += moved.pages;
     statistics.bytes_in += moved.bytes;
     return size_t(moved.pages);

@@ -6,6 +6,7 @@
 #include "core/system/log.h"
 #include "gpu/gl/gl_thread.h"
 #include "gpu/trace/tracer.h"
+#include "gpu/tuning/device_tuning.h"
 #include "plugin/build/update_scene.h"
 #include "plugin/two_level/tracing.h"
 
@@ -97,6 +98,10 @@ private:
     void close();
     void bring_first(BuildProgress* progress);
     Moved move_in(std::span<const uint32_t> wanted);
+    bool takes_measured() const;
+    bool measures() const;
+    ChosenVariants variants(GlState& state) const;
+    void tune(GlState& state, std::span<const RayState> rays, const PassCost& pass);
     /// Whether the tracer's context is alive. Called on the context's thread.
     bool is_ours(const GlState& state) const {
         return state.generation == tracer_generation_ && state.context.alive();

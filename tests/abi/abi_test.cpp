@@ -313,6 +313,22 @@ TEST_F(Abi, TheSystemsOfTheThesisAreInALibraryOfTheirOwn) {
     EXPECT_EQ(other, nullptr);
 }
 
+TEST_F(Abi, AKernelVariantIsOneThatThereIs) {
+    auto config = sized<ovc_scene_config>();
+    ovc_scene other = nullptr;
+    config.kernel_variant = "compute,warps";
+    EXPECT_EQ(api().create_scene(device, &config, &other), OVC_ERROR_INVALID_ARGUMENT);
+    EXPECT_THAT(error(), HasSubstr("ovc_scene_config.kernel_variant: 'warps' is no switch"));
+    config.kernel_variant = "fragment,refill";
+    EXPECT_EQ(api().create_scene(device, &config, &other), OVC_ERROR_INVALID_ARGUMENT);
+    EXPECT_THAT(error(), HasSubstr("no kernel is 'fragment,refill'"));
+    config.kernel_variant = "measure";
+    config.kernel = OVC_KERNEL_COMPUTE;
+    EXPECT_EQ(api().create_scene(device, &config, &other), OVC_ERROR_INVALID_ARGUMENT);
+    EXPECT_THAT(error(), HasSubstr("kernel is 2, expected 0"));
+    EXPECT_EQ(other, nullptr);
+}
+
 TEST_F(Abi, TwoDevicesAndScenesWorkSideBySide) {
     commit_triangle();
     ovc_device other = nullptr;

@@ -170,7 +170,7 @@ private:
     }
 
     void spoil(ovc_scene_config& config) {
-        switch (choices_.below(6)) {
+        switch (choices_.below(7)) {
         case 0:
             config.struct_size = choices_.below(40);
             break;
@@ -185,6 +185,9 @@ private:
             break;
         case 4:
             config.reserved = 1;
+            break;
+        case 5:
+            config.kernel_variant = "packets,fragment";
             break;
         default:
             config.leaves = config.leaf_triangles = 1;

@@ -52,7 +52,7 @@ class ovc_scene_config(Sized):
                 ("reserved", c.c_uint32),
                 ("saved", c.c_void_p), ("saved_bytes", c.c_uint64),
                 ("host_memory_bytes", c.c_uint64), ("read_saved", c.c_void_p),
-                ("read_user", c.c_void_p)]
+                ("read_user", c.c_void_p), ("kernel_variant", c.c_char_p)]
 
 
 MESH_SHARED, MESH_TEMPLATE, MESH_MOVES = 1, 2, 4

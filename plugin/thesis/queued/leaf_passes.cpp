@@ -63,7 +63,7 @@ Result<GLuint> LeafPasses::kernel() {
     config.stack_depth = stack_depth(pages_);
     config.stack_registers = software_;
     config.branches = !software_;
-    config.buffer_images = software_;
+    config.reads = software_ ? TexelReads::Images : TexelReads::Textures;
     if (needs(Workaround::CountedRounds) && units > kMaxCountedRounds)
         config.max_rounds = kMaxCountedRounds;
     const std::array<ShaderStage, 2> stages = {
@@ -107,7 +107,7 @@ Result<LeafPass> LeafPasses::run(uint32_t leaf, std::span<const FrameRay> rays,
                        GLint(pool_.residency().slot(leaf).offset / OVC_UNIT_BYTES));
     glProgramUniform1i(*program, kFirstOcclusionRay, GLint(first_occlusion));
     glUseProgram(*program);
-    pool_.bind(software_); // as config.buffer_images says
+    pool_.bind(software_ ? TexelReads::Images : TexelReads::Textures); // as the kernel reads
     glBindTextureUnit(OVC_BINDING_RAYS, rays_.id());
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
     glBindVertexArray(vertex_array_.id());

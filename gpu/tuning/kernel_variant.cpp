@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gpu/tuning/kernel_variant.h"
+
+#include "core/text/format_text.h"
+#include "shaders/layout.h"
+
+#include <algorithm>
+#include <charconv>
+
+namespace ovc {
+namespace {
+
+// Each word is a register (two with several buffers) and costs 1 % of the time on llvmpipe; of a
+// million rays at the Stanford dragon thirty need more words (docs/decisions/0012).
+constexpr uint32_t kRegisterWords = 8;
+constexpr std::array<std::string_view, 3> kReads{"textures", "images", "storage"};
+
+/// Takes "group=64" apart. Returns whether the word is `name` with a number.
+bool take_number(std::string_view word, std::string_view name, uint32_t& number) {
+    if (!word.starts_with(name) || word.size() <= name.size() || word[name.size()] != '=')
+        return false;
+    const char* const first = word.data() + name.size() + 1;
+    const char* const last = word.data() + word.size();
+    const auto [end, error] = std::from_chars(first, last, number);
+    return error == std::errc() && end == last && first != last;
+}
+
+bool take_word(std::string_view word, KernelVariant& variant) {
+    const auto reads = std::ranges::find(kReads, word);
+    if (reads != kReads.end())
+        variant.reads = TexelReads(reads - kReads.begin());
+    else if (word == "compute" || word == "fragment")
+        variant.compute = word == "compute";
+    else if (word == "packets")
+        variant.packets = true;
+    else if (word == "refill")
+        variant.refill = true;
+    else if (word == "deal")
+        variant.deal_groups = true;
+    else if (word == "branches" || word == "both-sides")
+        variant.branches = word == "branches";
+    else if (word == "array")
+        variant.register_words = 0;
+    else if (!take_number(word, "group", variant.group_size))
+        return take_number(word, "registers", variant.register_words) &&
+               variant.register_words > 0 && variant.register_words <= 64;
+    return true;
+}
+
+bool is_sound(const KernelVariant& v) {
+    const bool size = v.group_size == 32 || v.group_size == 64 || v.group_size == 128;
+    return size && (v.compute || !(v.packets || v.refill || v.deal_groups));
+}
+
+} // namespace
+
+std::string KernelVariant::text() const {
+    std::string text = compute ? format_text("compute,group={}", group_size) : "fragment";
+    text += packets ? ",packets" : "";
+    text += refill ? ",refill" : "";
+    text += deal_groups ? ",deal" : "";
+    text += branches ? ",branches" : ",both-sides";
+    text += register_words ? format_text(",registers={}", register_words) : ",array";
+    return text + "," + std::string(kReads[size_t(reads)]);
+}
+
+Result<KernelVariant> parse_variant(std::string_view text) {
+    KernelVariant variant;
+    for (std::string_view rest = text;;) {
+        const size_t comma = std::min(rest.find(','), rest.size());
+        if (!take_word(rest.substr(0, comma), variant))
+            return Error{format_text("'{}' is no switch of a kernel, in '{}'; there are compute, "
+                                     "fragment, group=N, packets, refill, deal, branches, "
+                                     "both-sides, registers=N, array, textures, images, storage",
+                                     rest.substr(0, comma), text)};
+        if (comma == rest.size())
+            break;
+        rest.remove_prefix(comma + 1);
+    }
+    if (!is_sound(variant))
+        return Error{format_text("no kernel is '{}': group is 32, 64 or 128, and packets, refill "
+                                 "and deal are the compute kernel's",
+                                 text)};
+    return variant;
+}
+
+ChosenVariants default_variants(const DeviceInfo& device, bool compute) {
+    KernelVariant variant{.compute = compute};
+    if (!device.is_software)
+        return ChosenVariants(variant);
+    variant.packets = variant.deal_groups = compute;
+    variant.refill = compute && device.can_refill();
+    variant.branches = false;
+    variant.register_words = kRegisterWords;
+    variant.reads = TexelReads::Images;
+    ChosenVariants variants(variant);
+    // Lanes that go alike end together, and taking up a ray means to go through the first portal.
+    for (const bool any_hit : {false, true})
+        variants[{.any_hit = any_hit, .portals = true, .coherent = true}].refill = false;
+    return variants;
+}
+
+std::vector<KernelVariant> neighbours(const KernelVariant& from, const DeviceInfo& device,
+                                      bool other_kernel) {
+    std::vector<KernelVariant> found;
+    const auto add = [&](auto change) {
+        KernelVariant variant = from;
+        change(variant);
+        if (!(variant == from) && is_sound(variant) && (!variant.refill || device.can_refill()))
+            found.push_back(variant);
+    };
+    add([](KernelVariant& v) { v.refill = !v.refill; });
+    for (const TexelReads reads :
+         {TexelReads::StorageBuffers, TexelReads::Images, TexelReads::Textures})
+        add([&](KernelVariant& v) { v.reads = reads; });
+    for (const uint32_t size : {32, 128, 64})
+        if (from.compute)
+            add([&](KernelVariant& v) { v.group_size = size; });
+    add([](KernelVariant& v) { v.branches = !v.branches; });
+    add([](KernelVariant& v) { v.packets = !v.packets; });
+    add([](KernelVariant& v) { v.register_words = v.register_words ? 0 : kRegisterWords; });
+    add([](KernelVariant& v) { v.deal_groups = !v.deal_groups; });
+    if (other_kernel)
+        add([](KernelVariant& v) {
+            v.compute = !v.compute;
+            v.packets = v.refill = v.deal_groups = false;
+        });
+    return found;
+}
+
+KernelVariant with_changes(KernelVariant base, const KernelVariant& from,
+                           const KernelVariant& changed) {
+    const auto take = [&](auto member) {
+        if (changed.*member != from.*member)
+            base.*member = changed.*member;
+    };
+    take(&KernelVariant::compute);
+    take(&KernelVariant::group_size);
+    take(&KernelVariant::packets);
+    take(&KernelVariant::refill);
+    take(&KernelVariant::deal_groups);
+    take(&KernelVariant::branches);
+    take(&KernelVariant::register_words);
+    take(&KernelVariant::reads);
+    return base;
+}
+
+bool can_read(const DeviceInfo& device, const KernelVariant& variant, uint32_t buffers,
+              uint64_t buffer_bytes) {
+    const bool small =
+        variant.reads != TexelReads::StorageBuffers || buffer_bytes <= device.max_storage_bytes;
+    return small && buffers <= device.pool_buffers_by_reads[size_t(variant.reads)];
+}
+
+std::string RayKind::text() const {
+    return format_text("{}, {} rays, {}", any_hit ? "any hit" : "nearest hit",
+                       coherent ? "coherent" : "scattered", portals ? "many frames" : "one frame");
+}
+
+} // namespace ovc

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/tuning/tune_device.h"
+
+#include "host/backend/backend.h"
+#include "host/bench/ray_sets.h"
+#include "host/camera/camera.h"
+#include "host/scene/scene_source.h"
+#include "host/scene/scene_summary.h"
+
+#include <array>
+
+namespace ovc {
+namespace {
+
+constexpr std::array kScenes{"knot", "fractal"}; // one frame, many
+constexpr uint32_t kSide = 512;                  // pixels
+
+Result<Done> trace_set(const RaySet& set, Backend& backend) {
+    std::vector<Hit> hits(set.rays.size());
+    std::vector<uint8_t> occluded(set.rays.size());
+    if (set.query == RayQuery::Nearest)
+        return backend.intersect(set.rays, {}, hits);
+    return backend.occluded(set.rays, {}, occluded);
+}
+
+} // namespace
+
+Result<Done> tune_device(const std::string& device,
+                         const std::function<void(const std::string&)>& tell) {
+    for (const char* name : kScenes) {
+        Result<Scene> scene = open_scene(name, LogSink());
+        if (!scene)
+            return scene.error();
+        const Camera camera = scene->camera
+                                  ? *scene->camera
+                                  : framing_camera(hittable_bounds(scene->soup), kSide, kSide);
+        BackendOptions options;
+        options.kind = BackendKind::TwoLevel;
+        options.device = device;
+        options.kernel_variant = "default";
+        const Result<std::unique_ptr<Backend>> reference =
+            make_backend(scene->soup, options, LogSink());
+        if (!reference)
+            return reference.error();
+        const auto sets = make_ray_sets(*scene, camera, kSide, kSide, **reference);
+        if (!sets)
+            return sets.error();
+        tell(std::string("scene ") + name);
+        options.kernel_variant = "measure";
+        const Result<std::unique_ptr<Backend>> measured =
+            make_backend(scene->soup, options, [&](LogLevel, const std::string& message) {
+                if (message.starts_with("kernel variant"))
+                    tell(message);
+            });
+        if (!measured)
+            return measured.error();
+        for (const RaySet& set : *sets)
+            if (const Result<Done> done = trace_set(set, **measured); !done)
+                return done.error();
+    }
+    return Done{};
+}
+
+} // namespace ovc

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+// TracerTrials: traces some rays of a pass again and again, each time as another variant of the
+// kernel, and compares their answers.
+#pragma once
+
+#include "core/system/log.h"
+#include "core/text/format_text.h"
+#include "gpu/trace/tracer.h"
+#include "gpu/tuning/device_tuning.h"
+
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace ovc {
+
+class TracerTrials final : public VariantTrials {
+public:
+    /// rays: some of the pass that the tracer has collected last, readable to the next whole block.
+    /// Both outlive this.
+    TracerTrials(Tracer& tracer, std::span<const RayState> rays, LogSink log)
+        : tracer_(tracer), rays_(rays), log_(std::move(log)), answers_(whole_blocks(rays.size())) {}
+
+    bool can_run(const KernelVariant& variant) override { return tracer_.can_run(variant); }
+    void begin(const KernelVariant& variant) override { tracer_.begin_to_compile(variant); }
+    bool is_ready(const KernelVariant& variant) override { return tracer_.is_ready(variant); }
+
+    std::optional<double> time(const KernelVariant& variant) override {
+        const std::span<Answer> answers = std::span(answers_).first(rays_.size());
+        tracer_.use(ChosenVariants(variant));
+        if (!tracer_.submit(rays_) || !tracer_.collect(answers))
+            return {};
+        if (expected_.empty())
+            expected_.assign(answers.begin(), answers.end());
+        const size_t different = count_contradictions(answers);
+        if (different == 0)
+            return tracer_.kernel_seconds();
+        say(log_, LogLevel::Warning,
+            format_text("kernel variant {} contradicts another in {} of {} answers, and is not "
+                        "used; please tell us, with the output of `overcast devices`",
+                        variant.text(), different, rays_.size()));
+        return {};
+    }
+
+private:
+    /// Counts the rays for which both kernels are certain, of different triangles.
+    size_t count_contradictions(std::span<const Answer> answers) const {
+        const bool any_hit = tracer_.ray_kind().any_hit;
+        const auto is_certain = [](const Answer& a) {
+            return a.prim != OVC_FLAGGED && a.prim != OVC_CAPPED &&
+                   a.further()[0] == OVC_NO_TRIANGLE;
+        };
+        size_t count = 0;
+        for (size_t i = 0; i < answers.size(); ++i) {
+            const Answer &a = answers[i], &b = expected_[i];
+            const bool alike =
+                any_hit ? (a.prim == OVC_MISS) == (b.prim == OVC_MISS) : a.prim == b.prim;
+            count += !alike && is_certain(a) && is_certain(b);
+        }
+        return count;
+    }
+
+    Tracer& tracer_;
+    const std::span<const RayState> rays_;
+    const LogSink log_;
+    std::vector<Answer> answers_;
+    std::vector<Answer> expected_; // of the variant that was timed first
+};
+
+} // namespace ovc
