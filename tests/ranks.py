@@ -149,7 +149,7 @@ def kill_ranks(overcast, folder, count, scene):
 
 
 def measure(overcast, folder):
-    """Prints the speed of ranks that built the scene, and the memory of ranks that read its file."""
+    """Prints the speed of ranks that built a scene, and the memory of those that read its file."""
     stats = folder / "stats.json"
 
     def render(scene, label, ranks, more):

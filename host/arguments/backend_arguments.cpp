@@ -13,12 +13,12 @@
 
 namespace ovc {
 
+/// In the order of ovc_ranks_own.
+static constexpr std::string_view kRanksOwn[] = {"auto", "share", "all"};
 static constexpr std::string_view kPrecisions[] = {"certified", "fast"};
 static constexpr std::string_view kKernels[] = {"auto", "fragment", "compute"};
 static constexpr std::string_view kLevels1[] = {"kd", "grid", "bvh"};
 static constexpr std::string_view kLevel1Builds[] = {"top-down", "bottom-up"};
-/// In the order of ovc_ranks_own.
-static constexpr std::string_view kRanksOwn[] = {"auto", "share", "all"};
 /// In the order of BackendKind.
 static constexpr std::string_view kBackends[] = {
     "auto",          "two-level", "cpu-kdtree", "embree",   "single-texture",

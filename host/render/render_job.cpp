@@ -492,8 +492,7 @@ static Result<Done> gather_ranks(const Ranks& ranks, RenderStats& stats) {
 /// Tells the user of the run, and ends it where there are several ranks and it is not complete.
 /// Returns the exit code.
 static Result<int> tell(const RenderJob& job, const Stopwatch& total,
-                        const std::vector<Omission>& omissions,
-                        RenderStats& stats) {
+                        const std::vector<Omission>& omissions, RenderStats& stats) {
     const Ranks* const ranks = job.render.ranks;
     if (ranks && stats.report.complete)
         if (const Result<Done> done = gather_ranks(*ranks, stats); !done)

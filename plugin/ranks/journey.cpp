@@ -16,8 +16,8 @@
 namespace ovc {
 
 /// A parcel has so many visits at most: enough that its cost is that of its bytes, and so few that
-/// the rank that gets it begins soon.
-static constexpr size_t kMaxParcel = size_t(1) << 14;
+/// its memory is reused, which the C library returns to the system from 128 KiB on.
+static constexpr size_t kMaxParcel = size_t(1) << 10;
 
 /// How many rays of a rank are at another one at once. All ranks may send theirs to the same one,
 /// whose memory for them this bounds: 24 MiB for two ranks, 48 MiB for many, and beyond 128 of them

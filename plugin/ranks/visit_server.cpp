@@ -19,11 +19,18 @@ struct VisitServer::Batch {
     std::vector<TriangleId> skip;
     std::vector<Hit> after;
     std::vector<uint32_t> masks;
+    std::vector<Hit> hits;
+    std::vector<uint8_t> occluded;
 
-    explicit Batch(std::span<const Inbox::Letter> letters) {
+    /// Takes the visits of these letters. The arrays keep their memory from batch to batch.
+    void fill(Letters letters) {
+        rays.clear();
+        skip.clear();
+        after.clear();
+        masks.clear();
         bool has_after = false, has_masks = false;
-        for (const Inbox::Letter& letter : letters)
-            for (const RankVisit& visit : letter.parcel.items<RankVisit>()) {
+        for (const Inbox::Letter* letter : letters)
+            for (const RankVisit& visit : letter->parcel.items<RankVisit>()) {
                 rays.push_back(visit.ray);
                 skip.push_back(visit.skip);
                 after.push_back({visit.after_t, 0, 0, visit.after});
@@ -45,7 +52,7 @@ struct VisitServer::Batch {
 };
 
 VisitServer::VisitServer(Structure& local, Post& post, LoopThreads* threads)
-    : local_(local), post_(post), threads_(threads) {
+    : local_(local), post_(post), threads_(threads), batch_(std::make_unique<Batch>()) {
     thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
 }
 
@@ -72,14 +79,14 @@ void VisitServer::run(const std::stop_token& stop) {
 }
 
 void VisitServer::serve(std::span<const Inbox::Letter> letters, ParcelKind kind) {
-    std::vector<Inbox::Letter> some;
+    std::vector<const Inbox::Letter*> some;
     const auto trace = [&] {
         if (some.empty())
             return;
         const std::lock_guard lock(local_mutex_);
         try {
-            const Batch batch(some);
-            (kind == ParcelKind::AnyVisits) ? trace_any(batch, some) : trace_nearest(batch, some);
+            batch_->fill(some);
+            (kind == ParcelKind::AnyVisits) ? trace_any(some) : trace_nearest(some);
         } catch (const std::exception& error) {
             fail(some, Error{error.what()});
         }
@@ -92,47 +99,49 @@ void VisitServer::serve(std::span<const Inbox::Letter> letters, ParcelKind kind)
         const size_t more = letter.parcel.items<RankVisit>().size();
         if (rays + more > kMaxBatch)
             trace(), rays = 0;
-        some.push_back(letter);
+        some.push_back(&letter);
         rays += more;
         served_ += letter.from == post_.rank() ? 0 : more;
     }
     trace();
 }
 
-void VisitServer::trace_nearest(const Batch& batch, std::span<const Inbox::Letter> letters) {
-    std::vector<Hit> hits(batch.rays.size());
-    if (const Result<Done> done = local_.intersect(batch.rays, batch.without(), hits); !done)
+void VisitServer::trace_nearest(Letters letters) {
+    std::vector<Hit>& hits = batch_->hits;
+    hits.resize(batch_->rays.size());
+    if (const Result<Done> done = local_.intersect(batch_->rays, batch_->without(), hits); !done)
         return fail(letters, done.error());
     size_t next = 0;
-    for (const Inbox::Letter& letter : letters) {
+    for (const Inbox::Letter* letter : letters) {
         std::vector<HitThere> answers;
-        for (const RankVisit& visit : letter.parcel.items<RankVisit>())
+        for (const RankVisit& visit : letter->parcel.items<RankVisit>())
             answers.push_back({hits[next++], visit.slot});
-        post_.send(letter.from, Parcel(ParcelKind::Hits, letter.parcel.call(),
-                                       std::span<const HitThere>(answers)));
+        post_.send(letter->from, Parcel(ParcelKind::Hits, letter->parcel.call(),
+                                        std::span<const HitThere>(answers)));
     }
 }
 
-void VisitServer::trace_any(const Batch& batch, std::span<const Inbox::Letter> letters) {
-    std::vector<uint8_t> occluded(batch.rays.size());
-    if (const Result<Done> done = local_.occluded(batch.rays, batch.without(), occluded); !done)
+void VisitServer::trace_any(Letters letters) {
+    std::vector<uint8_t>& occluded = batch_->occluded;
+    occluded.resize(batch_->rays.size());
+    if (const Result<Done> done = local_.occluded(batch_->rays, batch_->without(), occluded); !done)
         return fail(letters, done.error());
     size_t next = 0;
-    for (const Inbox::Letter& letter : letters) {
+    for (const Inbox::Letter* letter : letters) {
         std::vector<OcclusionThere> answers;
-        for (const RankVisit& visit : letter.parcel.items<RankVisit>())
+        for (const RankVisit& visit : letter->parcel.items<RankVisit>())
             answers.push_back({visit.slot, occluded[next++]});
-        post_.send(letter.from, Parcel(ParcelKind::Occlusions, letter.parcel.call(),
-                                       std::span<const OcclusionThere>(answers)));
+        post_.send(letter->from, Parcel(ParcelKind::Occlusions, letter->parcel.call(),
+                                        std::span<const OcclusionThere>(answers)));
     }
 }
 
-void VisitServer::fail(std::span<const Inbox::Letter> letters, const Error& error) {
+void VisitServer::fail(Letters letters, const Error& error) {
     std::string told(1, char(error.kind));
     told += error.message;
-    for (const Inbox::Letter& letter : letters)
-        post_.send(letter.from,
-                   Parcel(ParcelKind::Failure, letter.parcel.call(), std::span<const char>(told)));
+    for (const Inbox::Letter* letter : letters)
+        post_.send(letter->from,
+                   Parcel(ParcelKind::Failure, letter->parcel.call(), std::span<const char>(told)));
 }
 
 } // namespace ovc

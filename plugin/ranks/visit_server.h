@@ -8,6 +8,7 @@
 #include "plugin/structure/structure.h"
 
 #include <atomic>
+#include <memory>
 #include <mutex>
 #include <thread>
 
@@ -38,16 +39,18 @@ public:
 
 private:
     struct Batch;
+    using Letters = std::span<const Inbox::Letter* const>;
 
     void run(const std::stop_token& stop);
     void serve(std::span<const Inbox::Letter> letters, ParcelKind kind);
-    void trace_nearest(const Batch& batch, std::span<const Inbox::Letter> letters);
-    void trace_any(const Batch& batch, std::span<const Inbox::Letter> letters);
-    void fail(std::span<const Inbox::Letter> letters, const Error& error);
+    void trace_nearest(Letters letters);
+    void trace_any(Letters letters);
+    void fail(Letters letters, const Error& error);
 
     Structure& local_;
     Post& post_;
     LoopThreads* const threads_;
+    const std::unique_ptr<Batch> batch_; // under way
     std::mutex local_mutex_;
     std::atomic<bool> is_idle_{true};
     std::atomic<uint64_t> served_{0};

@@ -1,17 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0
 """A model of ranks that share a scene out: a discrete-event simulation of a picture's rays.
 
-Each rank has a home, which sends rays off and takes their answers, a server, which traces what visits it in batches, and a
-post. Home and server want cores of the rank's node, the post its network. A call's rays go to their first stop in parcels; of those
-that come back a part goes on to another. What is simulated follows docs/decisions/0031; rates are measured (measure.py).
+Each rank has a home, which sends rays off and takes their answers, a server, which traces what
+visits it in batches, and a post. Home and server want cores of the rank's node, the post its
+network. A call's rays go to their first stop in parcels; of those that come back a part goes on to
+another. What is simulated follows docs/decisions/0031; rates are measured (scale.py).
 """
 import dataclasses
 import heapq
 import itertools
 import math
 
-PARCEL = 1 << 14       # visits a parcel at most, as in plugin/ranks/journey.cpp
-BATCH = 1 << 18        # visits a batch of the server at most, as in plugin/ranks/visit_server.cpp
+PARCEL = 1 << 14       # visits a message at most: parcels that follow each other count as one
+BATCH = 1 << 17        # visits a batch of the server at most, as in plugin/ranks/visit_server.cpp
 VISIT_BYTES, ANSWER_BYTES = 96, 40
 MAX_SIMULATED = 32     # ranks; of more, so many stand for all
 
@@ -21,14 +22,14 @@ class Machine:
     """What a rank runs on. Seconds are of one core, unless a device is said to trace."""
     cores: int = 2                 # of a node
     ranks_per_node: int = 1
-    visit_seconds: float = 1e-6    # of the server, a visit, as many cores as `server_cores` work on it
+    visit_seconds: float = 1e-6    # of the server, a visit, on `server_cores` cores
     server_cores: int = 1
     batch_seconds: float = 1e-3    # of the server, a batch, besides its visits
     home_seconds: float = 1e-7     # of the home, a visit: to send it off and take its answer
     shade_seconds: float = 1e-7    # of the home, a ray, between calls
     message_seconds: float = 2e-6  # of latency, a message
     message_cpu: float = 1e-6      # of the home, a message
-    bandwidth: float = 1e10        # bytes a second, of a node each way; within a node there is no limit
+    bandwidth: float = 1e10        # bytes a second, of a node each way; no limit within a node
     disk: float = 2e9              # bytes a second, of a node
 
 

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Measures ranks on this machine, checks the model of scale against them, and predicts larger jobs.
 
-usage: scale.py measure OVERCAST SCENE.ovc RATES.json [--size WxH] [--repeats N]   runs 1, 2, 4, 8 ranks
-       scale.py check RATES.json        simulated beside measured; exit 1 where one is off by more than 20 %
-       scale.py predict RATES.json      frames of up to 1e11 triangles on up to 1,000 ranks, and what limits them
+usage: scale.py measure OVERCAST SCENE RATES.json [--size WxH] [--repeats N]
+                                          runs 1, 2, 4, 8 ranks of a thread
+       scale.py check RATES.json          simulated beside measured; exit 1 above 20 %
+       scale.py predict RATES.json        frames of up to 1e11 triangles on up to 1,000 ranks
 """
 import argparse
 import dataclasses
@@ -66,7 +67,7 @@ def job_of(run, ranks):
 
 
 def fitted(rates):
-    """The machine whose one rank and two ranks take what was measured; of more ranks nothing is fitted."""
+    """The machine whose one and two ranks take what was measured; more ranks are not fitted."""
     alone, two = rates["runs"]["1"], rates["runs"]["2"]
     total = sum(alone["rays"])
     machine = model.Machine(cores=rates["cores"], shade_seconds=alone["shade"] / total,
@@ -93,8 +94,8 @@ def check(arguments):
     rates = json.loads(pathlib.Path(arguments.rates).read_text())
     machine = fitted(rates)
     print(f"{rates['scene']}, {rates['size']}, {rates['cores']} cores: a visit "
-          f"{machine.visit_seconds * 1e6:.2f} us of the server and {machine.home_seconds * 1e6:.2f} "
-          f"us at home")
+          f"{machine.visit_seconds * 1e6:.2f} us of the server and "
+          f"{machine.home_seconds * 1e6:.2f} us at home")
     print("| ranks | visits a ray | busiest share | measured s | simulated s | off |")
     print("|---:|---:|---:|---:|---:|---:|")
     wrong = False
@@ -110,7 +111,7 @@ def check(arguments):
 
 
 def visits_at(rates, ranks):
-    """Visits a ray, extended by the cube root of ranks: so many blocks of a volume lie on a line."""
+    """Visits a ray, extended by the cube root of ranks, as blocks of a volume lie on a line."""
     runs = rates["runs"]
     slope = statistics.mean((runs[str(n)]["visits_per_ray"] - 1) / (n ** (1 / 3) - 1)
                             for n in COUNTS if n > 1)

@@ -52,7 +52,9 @@ class ovc_scene_config(Sized):
                 ("reserved", c.c_uint32),
                 ("saved", c.c_void_p), ("saved_bytes", c.c_uint64),
                 ("host_memory_bytes", c.c_uint64), ("read_saved", c.c_void_p),
-                ("read_user", c.c_void_p), ("kernel_variant", c.c_char_p)]
+                ("read_user", c.c_void_p), ("communicator", c.c_int32), ("ranks_own", c.c_uint32),
+                ("rank_timeout", c.c_double), ("sample", c.c_void_p), ("sample_rays", c.c_uint64),
+                ("kernel_variant", c.c_char_p)]
 
 
 MESH_SHARED, MESH_TEMPLATE, MESH_MOVES = 1, 2, 4
