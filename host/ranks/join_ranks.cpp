@@ -4,12 +4,19 @@
 
 #include "host/terminal/interrupt.h"
 
+#include <algorithm>
 #include <filesystem>
 
 namespace ovc {
 
-/// A host budget that never matters.
-static constexpr uint64_t kNoLimit = uint64_t(1) << 60;
+/// Returns the host memory of a rank that has a share of a scene file: a little more than its part
+/// of the file, for shares differ.
+static uint64_t share_of_file(const std::string& path, uint32_t ranks) {
+    constexpr uint64_t kLeast = uint64_t(64) << 20;
+    std::error_code unreadable; // which whoever opens it will tell
+    const uint64_t bytes = std::filesystem::file_size(path, unreadable);
+    return unreadable ? kLeast : std::max(kLeast, bytes / ranks / 4 * 5);
+}
 
 Result<Done> join_ranks(BackendOptions& backend, SceneArguments& scene) {
     if (const Result<Done> done = Ranks::open(backend.rank_timeout); !done)
@@ -25,7 +32,7 @@ Result<Done> join_ranks(BackendOptions& backend, SceneArguments& scene) {
     const bool is_scene_file =
         scene.scenes.size() == 1 && std::filesystem::path(scene.scenes[0]).extension() == ".ovc";
     if (backend.ranks_own == OVC_RANKS_OWN_SHARE && is_scene_file && backend.host_bytes == 0)
-        backend.host_bytes = kNoLimit;
+        backend.host_bytes = share_of_file(scene.scenes[0], ranks->count());
     scene.host_bytes = backend.host_bytes;
     return Done{};
 }

@@ -20,12 +20,21 @@ static std::unique_ptr<const Ranks>& ranks_of_run() {
     return ranks;
 }
 
-bool Ranks::are_there() {
-    // Set by the starters of Open MPI, of MPICH and its kin, and of PMIx.
+/// Returns how many processes the starter of this one has started; 0: it has none.
+static int started_processes() {
+    // Set by the starters of Open MPI, and of MPICH and its kin.
     for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE"})
         if (const char* size = std::getenv(name))
-            return std::atoi(size) > 1;
-    return false;
+            return std::atoi(size);
+    return 0;
+}
+
+bool Ranks::has_starter() {
+    return started_processes() > 0;
+}
+
+bool Ranks::are_there() {
+    return started_processes() > 1;
 }
 
 bool Ranks::library_is_there() {

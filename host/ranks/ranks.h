@@ -25,7 +25,9 @@ using GoesOn = std::function<bool()>;
 
 class Ranks {
 public:
-    /// Whether mpirun, or what does its work, has started this process among several.
+    /// Whether mpirun, or what does its work, has started this process; perhaps it alone.
+    static bool has_starter();
+    /// The same, among several.
     static bool are_there();
     /// Whether the library was built and lies where open() looks for it.
     static bool library_is_there();

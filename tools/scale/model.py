@@ -11,10 +11,10 @@ import heapq
 import itertools
 import math
 
-PARCEL = 1 << 14       # visits a message at most: parcels that follow each other count as one
+PARCEL = 1 << 15       # visits a message at most: parcels that follow each other count as one
 BATCH = 1 << 17        # visits a batch of the server at most, as in plugin/ranks/visit_server.cpp
 VISIT_BYTES, ANSWER_BYTES = 96, 40
-MAX_SIMULATED = 32     # ranks; of more, so many stand for all
+MAX_SIMULATED = 16     # ranks; of more, so many stand for all
 
 
 @dataclasses.dataclass
@@ -72,7 +72,7 @@ class Simulation:
         self.waiting = [[] for _ in range(self.shown)]
         self.serving = [False] * self.shown
         self.call = [-1] * self.shown
-        self.away = [0.0] * self.shown
+        self.away = [0] * self.shown  # parcels of a home that are on their way or elsewhere
         self.ends = [0.0] * self.shown
         self.unread = job.disk_bytes / job.ranks
         mean = (job.ranks - job.imbalance) / max(job.ranks - 1, 1)
@@ -107,7 +107,6 @@ class Simulation:
             self.ends[rank] = self.now
             return
         rays = self.job.rays[self.call[rank]] / self.job.ranks
-        self.away[rank] = rays
         done = self.cores[self.node(rank)].take(self.now, rays * self.machine.shade_seconds)
         if rays < 1e-9:
             self.at(done, self.next_call, rank)
@@ -124,6 +123,7 @@ class Simulation:
             while rest > 1e-9:
                 count = min(rest, PARCEL)
                 rest -= count
+                self.away[home] += 1
                 self.send(home, rank, count, VISIT_BYTES, self.arrive)
 
     def send(self, home, other, count, size, then):
@@ -171,10 +171,10 @@ class Simulation:
         further = count * (1 - 1 / self.job.visits_per_ray)
         if self.shown == 1 or further < 0.5:
             further = 0
-        self.away[home] -= count - further
+        self.away[home] -= 1
         if further:
             self.send_off(home, further, rank)
-        elif self.away[home] < 1e-6 * max(self.job.rays[self.call[home]] / self.job.ranks, 1):
+        elif self.away[home] == 0:
             self.next_call(home)
 
 
