@@ -2,7 +2,6 @@
 // The structure of libovercast.so: two-level on one machine.
 #include "core/text/format_text.h"
 #include "plugin/out_of_core/streamed_build.h"
-#include "plugin/plan/forecast.h"
 #include "plugin/structure/failure.h"
 #include "plugin/structure/structure.h"
 #include "plugin/two_level/make_two_level.h"
@@ -33,9 +32,7 @@ Result<std::unique_ptr<Structure>> make_structure(const Soup& soup, GlThread& gl
 Result<ovc_plan> plan_structure(const Soup& soup, const DeviceInfo& device,
                                 const ovc_scene_config& config, BuildProgress* progress,
                                 LeafStore* store) {
-    TwoLevelOptions options = two_level_options(config);
-    options.store = store;
-    return forecast(soup, options, device, progress);
+    return plan_two_level(soup, device, config, progress, store);
 }
 
 Result<Done> save_structure(const StreamedScene& scene, const DeviceInfo& device,

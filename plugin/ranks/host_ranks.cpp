@@ -6,6 +6,7 @@
 #include "plugin/ranks/notes.h"
 
 #include <cstdlib>
+#include <exception>
 #include <memory>
 #include <string>
 
@@ -38,23 +39,42 @@ ovc_result failed(const Error& error) {
     return error.kind == ErrorKind::Cancelled ? OVC_ERROR_CANCELLED : OVC_ERROR_INTERNAL;
 }
 
+/// Runs body(), which returns a Result; nothing that it throws leaves the library.
+template <class Body>
+ovc_result guarded(const void* bytes, size_t size, ovc_take_function take, Body&& body) {
+    if (!take || (!bytes && size > 0)) {
+        host_ranks().error = "ovc_ranks: take is NULL, or bytes is and size is not 0";
+        return OVC_ERROR_INVALID_ARGUMENT;
+    }
+    try {
+        const Result<Done> done = body();
+        return done ? OVC_OK : failed(done.error());
+    } catch (const std::exception& error) {
+        return failed({error.what()});
+    }
+}
+
 ovc_result gather(const void* bytes, size_t size, ovc_take_function take, ovc_wait_function wait,
                   void* user) {
-    const auto all = host_ranks().notes->gather(span_of(bytes, size), waits(wait, user));
-    if (!all)
-        return failed(all.error());
-    for (uint32_t rank = 0; rank < all->size(); ++rank)
-        take(user, rank, (*all)[rank].data(), (*all)[rank].size());
-    return OVC_OK;
+    return guarded(bytes, size, take, [&]() -> Result<Done> {
+        const auto all = host_ranks().notes->gather(span_of(bytes, size), waits(wait, user));
+        if (!all)
+            return all.error();
+        for (uint32_t rank = 0; rank < all->size(); ++rank)
+            take(user, rank, (*all)[rank].data(), (*all)[rank].size());
+        return Done{};
+    });
 }
 
 ovc_result spread(const void* bytes, size_t size, ovc_take_function take, ovc_wait_function wait,
                   void* user) {
-    const auto first = host_ranks().notes->spread(span_of(bytes, size), waits(wait, user));
-    if (!first)
-        return failed(first.error());
-    take(user, 0, first->data(), first->size());
-    return OVC_OK;
+    return guarded(bytes, size, take, [&]() -> Result<Done> {
+        const auto first = host_ranks().notes->spread(span_of(bytes, size), waits(wait, user));
+        if (!first)
+            return first.error();
+        take(user, 0, first->data(), first->size());
+        return Done{};
+    });
 }
 
 bool open(double timeout_seconds) {

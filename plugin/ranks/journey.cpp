@@ -128,11 +128,11 @@ RankVisit Journey::visit_of(uint32_t ray) const {
 }
 
 Result<Done> Journey::wait() {
-    const bool was_idle = is_idle_();
+    const bool was_idle = ranks_.is_idle();
     const Stopwatch watch;
     const std::vector<Inbox::Letter> letters =
         ranks_.post.answers.take(std::chrono::milliseconds(50));
-    if (was_idle && is_idle_())
+    if (was_idle && ranks_.is_idle())
         seconds_waiting_ += watch.seconds();
     for (const Inbox::Letter& letter : letters)
         if (letter.parcel.call() == call_)
@@ -147,9 +147,9 @@ Result<Done> Journey::take(const Inbox::Letter& letter) {
     const Parcel& parcel = letter.parcel;
     if (parcel.kind() == ParcelKind::Failure) {
         const auto told = parcel.items<char>();
-        return Error{format_text("{}: {}", ranks_.post.name_of(letter.from),
-                                 std::string(told.begin() + 1, told.end())),
-                     ErrorKind(told.front())};
+        Error error = error_of_text({told.data(), told.size()});
+        error.message = format_text("{}: {}", ranks_.post.name_of(letter.from), error.message);
+        return error;
     }
     const auto came_back = [&](uint32_t ray) {
         --ways_[letter.from].away;

@@ -24,6 +24,7 @@ struct Itinerary {
     bool certified;
     const StopFinder& finder;
     Post& post;
+    std::function<bool()> is_idle; // whether this rank traces nothing just now
 };
 
 /// The rays of a call, at most kMaxRays, and where their answers go: one of the last two is empty.
@@ -45,10 +46,8 @@ public:
     Result<Done> run();
 
     uint64_t visits_elsewhere() const { return visits_elsewhere_; }
-    /// Returns how long there was nothing to do but to wait for other ranks. is_idle(): whether
-    /// this rank traces nothing just now.
+    /// Returns how long there was nothing to do but to wait for other ranks.
     double seconds_waiting() const { return seconds_waiting_; }
-    void watch_idle(std::function<bool()> is_idle) { is_idle_ = std::move(is_idle); }
 
 private:
     /// What waits to go to a rank, and what is there.
@@ -72,7 +71,6 @@ private:
     const JourneyRays& rays_;
     const uint32_t call_;
     CallWatch& watch_;
-    std::function<bool()> is_idle_ = [] { return false; };
     std::vector<Stop> stops_;    // of all rays
     std::vector<uint32_t> next_; // of each ray, into stops_
     std::vector<uint32_t> end_;  // likewise

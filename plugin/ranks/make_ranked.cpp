@@ -2,7 +2,6 @@
 // The structure of libovercast-mpi.so: two-level, whose pages are shared out between ranks where
 // they do not fit, or where the config says so.
 #include "core/text/format_text.h"
-#include "plugin/plan/forecast.h"
 #include "plugin/ranks/mpi_post.h"
 #include "plugin/ranks/notes.h"
 #include "plugin/ranks/ranked_scene.h"
@@ -77,9 +76,7 @@ Result<std::unique_ptr<Structure>> make_structure(const Soup& soup, GlThread& gl
 Result<ovc_plan> plan_structure(const Soup& soup, const DeviceInfo& device,
                                 const ovc_scene_config& config, BuildProgress* progress,
                                 LeafStore* store) {
-    TwoLevelOptions options = two_level_options(config);
-    options.store = store;
-    return forecast(soup, options, device, progress);
+    return plan_two_level(soup, device, config, progress, store);
 }
 
 Result<Done> save_structure(const StreamedScene&, const DeviceInfo&, const ovc_scene_config&,

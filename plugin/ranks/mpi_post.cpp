@@ -105,7 +105,8 @@ protected:
 private:
     struct Sending {
         MPI_Request request = MPI_REQUEST_NULL;
-        Parcel parcel;
+        Parcel parcel;     // or
+        uint32_t word = 0; // about a rank
     };
 
     void gather_hosts() {
@@ -234,12 +235,9 @@ private:
 
     void send_word(uint32_t to, int tag, uint32_t word) {
         Sending& sending = sending_.emplace_back();
-        sending.parcel = Parcel(ParcelKind::Note, 0, std::span<const uint32_t>());
-        // The word lies in the parcel's head, whose call it is.
-        sending.parcel = Parcel(ParcelKind::Note, word, std::span<const uint32_t>());
-        const auto bytes = sending.parcel.bytes().subspan(sizeof(uint32_t));
-        MPI_Isend(bytes.data(), int(bytes.size()), MPI_BYTE, int(to), tag, comm_, &sending.request);
-        sent_ += bytes.size();
+        sending.word = word;
+        MPI_Isend(&sending.word, sizeof(word), MPI_BYTE, int(to), tag, comm_, &sending.request);
+        sent_ += sizeof(word);
     }
 
     void lose(uint32_t rank) {
@@ -280,9 +278,20 @@ Result<std::unique_ptr<Post>> make_mpi_post(const MpiPostOptions& options) {
         return Error{format_text("ovc_scene_config.communicator is {}, which is no communicator",
                                  options.communicator),
                      ErrorKind::InvalidArgument};
-    MPI_Comm own;
-    if (MPI_Comm_dup(given, &own) != MPI_SUCCESS)
-        return Error{"MPI cannot make a communicator"};
+    // By default MPI ends the process on an error, as for a handle that is none.
+    MPI_Errhandler before;
+    MPI_Comm_get_errhandler(MPI_COMM_WORLD, &before);
+    MPI_Comm_set_errhandler(MPI_COMM_WORLD, MPI_ERRORS_RETURN);
+    MPI_Comm own = MPI_COMM_NULL;
+    const int made = MPI_Comm_dup(given, &own);
+    MPI_Comm_set_errhandler(MPI_COMM_WORLD, before);
+    MPI_Errhandler_free(&before);
+    if (made != MPI_SUCCESS)
+        return Error{format_text("MPI cannot make a communicator like "
+                                 "ovc_scene_config.communicator, which is {}",
+                                 options.communicator),
+                     ErrorKind::InvalidArgument};
+    MPI_Comm_set_errhandler(own, MPI_ERRORS_RETURN);
     const double timeout = options.timeout_seconds > 0 ? options.timeout_seconds : kDefaultTimeout;
     return std::unique_ptr<Post>(std::make_unique<MpiPost>(own, timeout));
 }

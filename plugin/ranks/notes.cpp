@@ -55,25 +55,21 @@ Result<std::vector<std::byte>> Notes::spread(std::span<const std::byte> of_first
     return std::vector<std::byte>(of_first.begin(), of_first.end());
 }
 
-/// An error, or none, as bytes.
-static std::string told(const Result<Done>& result) {
-    return result ? std::string() : char('0' + int(result.error().kind)) + result.error().message;
-}
-
 static std::span<const std::byte> bytes_of_text(const std::string& text) {
     return std::as_bytes(std::span(text));
 }
 
 Result<Done> first_error(Notes& notes, Post& post, const Result<Done>& mine) {
     const auto always = [] { return true; };
-    const auto all = notes.gather(bytes_of_text(told(mine)), always);
+    const auto all = notes.gather(bytes_of_text(mine ? "" : text_of_error(mine.error())), always);
     if (!all)
         return all.error();
     std::string first;
     for (uint32_t rank = 0; rank < all->size() && first.empty(); ++rank)
         if (const auto& note = (*all)[rank]; !note.empty()) {
-            const std::string text(reinterpret_cast<const char*>(note.data()), note.size());
-            first = text.substr(0, 1) + format_text("{}: {}", post.name_of(rank), text.substr(1));
+            Error error = error_of_text({reinterpret_cast<const char*>(note.data()), note.size()});
+            error.message = format_text("{}: {}", post.name_of(rank), error.message);
+            first = text_of_error(error);
         }
     const auto spread = notes.spread(bytes_of_text(first), always);
     if (!spread)
@@ -81,7 +77,7 @@ Result<Done> first_error(Notes& notes, Post& post, const Result<Done>& mine) {
     if (!mine || spread->empty())
         return mine;
     const std::string text(reinterpret_cast<const char*>(spread->data()), spread->size());
-    return Error{text.substr(1), ErrorKind(text.front() - '0')};
+    return error_of_text(text);
 }
 
 } // namespace ovc

@@ -5,12 +5,15 @@
 
 #include "core/exclusions.h"
 #include "core/ray.h"
+#include "core/result.h"
 
 #include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <span>
+#include <string>
+#include <string_view>
 #include <type_traits>
 #include <vector>
 
@@ -96,5 +99,13 @@ private:
 
     std::vector<std::byte> bytes_;
 };
+
+/// Returns the error as text for a parcel, which is not empty: its kind and its sentence.
+inline std::string text_of_error(const Error& error) {
+    return char('0' + int(error.kind)) + error.message;
+}
+inline Error error_of_text(std::string_view text) {
+    return {std::string(text.substr(1)), ErrorKind(text.front() - '0')};
+}
 
 } // namespace ovc

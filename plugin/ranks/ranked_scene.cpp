@@ -13,7 +13,8 @@ namespace ovc {
 RankedScene::RankedScene(const Soup& soup, RankedParts parts)
     : parts_(std::move(parts)),
       server_(*parts_.local, *parts_.post, parts_.threads),
-      itinerary_{soup, parts_.certified, *parts_.finder, *parts_.post} {}
+      itinerary_{soup, parts_.certified, *parts_.finder, *parts_.post,
+                 [this] { return server_.is_idle(); }} {}
 
 RankedScene::~RankedScene() {
     parts_.post->close();
@@ -31,7 +32,6 @@ Result<Done> RankedScene::travel(RaySpan rays, const Exclusions& without, std::s
                                occluded.empty() ? occluded : occluded.subspan(first, count)};
         watch_.begin_part(part, parts);
         Journey journey(itinerary_, some, ++calls_, watch_);
-        journey.watch_idle([this] { return server_.is_idle(); });
         const Result<Done> done = journey.run();
         counted_.rays_sent += journey.visits_elsewhere();
         counted_.seconds_waiting += journey.seconds_waiting();

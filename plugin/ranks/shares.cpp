@@ -49,8 +49,9 @@ std::vector<double> expected_rays(std::span<const PageBox> boxes, size_t pages,
         if (!ray.valid())
             continue;
         entries.clear();
+        const EnteringRay entering(ray);
         for (const PageBox& box : boxes)
-            if (const double t = box_entry(ray, box.box); t != kNoEntry)
+            if (const double t = entering.entry(box.box); t != kNoEntry)
                 entries.push_back({t, box.page});
         std::ranges::sort(entries);
         double left = 1;

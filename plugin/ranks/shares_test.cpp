@@ -49,6 +49,13 @@ TEST(BoxEntry, KnowsBoxesThatARayMisses) {
     EXPECT_DOUBLE_EQ(box_entry({{0, 0, 0}, 0.5, {0, 0, 1}, 30}, box), 0.5);
 }
 
+/// 1 / dir.y is infinite, and yet the ray gets there.
+TEST(BoxEntry, IsThereForARayWithHardlyAnyDirection) {
+    const Box box{dvec3(0, 1e-11, -1), dvec3(2, 1, 1)};
+    EXPECT_LE(box_entry({{-1, 0, 0}, 0, {1e-300, 1e-310, 0}}, box), 1.5e300);
+    EXPECT_EQ(box_entry({{-1, 0, 2}, 0, {1e-300, 1e-310, 0}}, box), kNoEntry);
+}
+
 TEST(StopFinder, FindsEveryRankOfTheBoxesOnTheWay) {
     test::Random random(2);
     std::vector<PageBox> boxes;

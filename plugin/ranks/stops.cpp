@@ -2,11 +2,8 @@
 // Joins the boxes of each rank to a few, and tests a ray with those of the ranks that it comes by.
 #include "plugin/ranks/stops.h"
 
-#include "plugin/ranks/box_entry.h"
-
 #include <algorithm>
 #include <cassert>
-#include <limits>
 
 namespace ovc {
 
@@ -21,26 +18,16 @@ void StopFinder::Boxes::add(const Box& box) {
     }
 }
 
-void StopFinder::Boxes::enter(const Ray& ray, std::vector<double>& entries) const {
+void StopFinder::Boxes::enter(const EnteringRay& ray, std::vector<double>& entries) const {
     entries.resize(size());
-    const dvec3 inv = dvec3(1) / (ray.dir + 0.0); // which makes 0 of -0
     const double* in[3];
     const double* out[3];
     for (int axis = 0; axis < 3; ++axis) {
-        in[axis] = sides_[ray.dir[axis] < 0 ? 3 + axis : axis].data();
-        out[axis] = sides_[ray.dir[axis] < 0 ? axis : 3 + axis].data();
+        in[axis] = sides_[ray.goes_down(axis) ? 3 + axis : axis].data();
+        out[axis] = sides_[ray.goes_down(axis) ? axis : 3 + axis].data();
     }
-    for (size_t i = 0; i < entries.size(); ++i) {
-        double near = ray.t_min, far = ray.t_max;
-        for (int axis = 0; axis < 3; ++axis) {
-            // 0 times infinity is NaN, which bounds nothing: max and min keep what they have.
-            near = std::max(near, (in[axis][i] - ray.org[axis]) * inv[axis]);
-            far = std::min(far, (out[axis][i] - ray.org[axis]) * inv[axis]);
-        }
-        near = with_margin(near, -1);
-        far = with_margin(far, 1);
-        entries[i] = near <= far ? near : kNoEntry; // infinite where an axis is passed by
-    }
+    for (size_t i = 0; i < entries.size(); ++i)
+        entries[i] = ray.entry({in[0][i], in[1][i], in[2][i]}, {out[0][i], out[1][i], out[2][i]});
 }
 
 StopFinder::StopFinder(std::span<const PageBox> boxes, std::span<const uint32_t> owners,
@@ -76,11 +63,12 @@ StopFinder::StopFinder(std::span<const PageBox> boxes, std::span<const uint32_t>
 void StopFinder::find(const Ray& ray, std::vector<Stop>& stops) const {
     stops.clear();
     thread_local std::vector<double> of_ranks, of_parts;
-    around_.enter(ray, of_ranks);
+    const EnteringRay entering(ray);
+    around_.enter(entering, of_ranks);
     for (size_t i = 0; i < ranks_.size(); ++i) {
         if (of_ranks[i] == kNoEntry)
             continue;
-        parts_[i].enter(ray, of_parts);
+        parts_[i].enter(entering, of_parts);
         const double t = *std::ranges::min_element(of_parts);
         if (t != kNoEntry)
             stops.push_back({t, ranks_[i]});

@@ -4,6 +4,7 @@
 
 #include "core/box.h"
 #include "core/ray.h"
+#include "plugin/ranks/box_entry.h"
 #include "plugin/ranks/shares.h"
 
 #include <cstdint>
@@ -33,8 +34,8 @@ private:
     public:
         void add(const Box& box);
         size_t size() const { return sides_[0].size(); }
-        /// Sets entries[i] to box_entry() of box i, or a little less.
-        void enter(const Ray& ray, std::vector<double>& entries) const;
+        /// Sets entries[i] to the entry of box i.
+        void enter(const EnteringRay& ray, std::vector<double>& entries) const;
 
     private:
         std::vector<double> sides_[6]; // lo.x, lo.y, lo.z, hi.x, hi.y, hi.z

@@ -137,8 +137,7 @@ void VisitServer::trace_any(Letters letters) {
 }
 
 void VisitServer::fail(Letters letters, const Error& error) {
-    std::string told(1, char(error.kind));
-    told += error.message;
+    const std::string told = text_of_error(error);
     for (const Inbox::Letter* letter : letters)
         post_.send(letter->from,
                    Parcel(ParcelKind::Failure, letter->parcel.call(), std::span<const char>(told)));

@@ -3,10 +3,8 @@
 #include "plugin/two_level/make_two_level.h"
 
 #include "core/text/format_text.h"
-#include "plugin/out_of_core/streamed_build.h"
 #include "plugin/plan/forecast.h"
 #include "plugin/structure/failure.h"
-#include "plugin/structure/structure.h"
 #include "plugin/two_level/two_level.h"
 
 namespace ovc {
@@ -73,6 +71,14 @@ TwoLevelOptions two_level_options(const ovc_scene_config& config) {
     if (const auto choice = variant_choice(config, options.given_variant))
         options.variant = *choice;
     return options;
+}
+
+Result<ovc_plan> plan_two_level(const Soup& soup, const DeviceInfo& device,
+                                const ovc_scene_config& config, BuildProgress* progress,
+                                LeafStore* store) {
+    TwoLevelOptions options = two_level_options(config);
+    options.store = store;
+    return forecast(soup, options, device, progress);
 }
 
 ovc_statistics TwoLevel::report() const {

@@ -15,4 +15,9 @@ void check_two_level(const ovc_scene_config& config, const DeviceInfo& device);
 /// Returns the options that the config asks for. Its `saved` must outlive them.
 TwoLevelOptions two_level_options(const ovc_scene_config& config);
 
+/// As plan_structure().
+Result<ovc_plan> plan_two_level(const Soup& soup, const DeviceInfo& device,
+                                const ovc_scene_config& config, BuildProgress* progress,
+                                LeafStore* store);
+
 } // namespace ovc
