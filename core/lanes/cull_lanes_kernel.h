@@ -5,53 +5,13 @@
 
 #include "core/exact/rounding.h"
 #include "core/lanes/cull_lanes.h"
-#include "core/lanes/hit_lanes_kernel.h"
+#include "core/lanes/lanes_kernel.h"
 
 namespace ovc {
-
-/// True (all bits) or false (none), by lanes.
-template <class V>
-using MaskOf = decltype(V{} < V{});
-/// Integers modulo 2^64, by lanes. GCC knows no such template without a structure around it.
-template <class V>
-struct WordsType {
-    typedef unsigned long long Type __attribute__((vector_size(sizeof(V))));
-};
-template <class V>
-using WordsOf = typename WordsType<V>::Type;
-
-template <class V>
-OVC_INLINE V smaller(V a, V b) {
-    return a < b ? a : b;
-}
-template <class V>
-OVC_INLINE V larger(V a, V b) {
-    return a > b ? a : b;
-}
-template <class V>
-OVC_INLINE V magnitude(V x) {
-    return Lanes<V>::magnitude(x);
-}
-template <class V>
-OVC_INLINE WordsOf<V> words_of(V x) {
-    WordsOf<V> words;
-    __builtin_memcpy(&words, &x, sizeof(V));
-    return words;
-}
-template <class V>
-OVC_INLINE V all_lanes(double x) {
-    return V{} + x;
-}
 
 template <class V>
 OVC_INLINE Vec3Of<V> in_all_lanes(const double (&v)[3]) {
     return {all_lanes<V>(v[0]), all_lanes<V>(v[1]), all_lanes<V>(v[2])};
-}
-
-/// Returns a bit for each lane that is true.
-template <class V>
-OVC_INLINE uint32_t bits_of(MaskOf<V> mask) {
-    return Lanes<V>::bits(mask);
 }
 
 /// Triangles, [corner][axis].

@@ -6,15 +6,9 @@
 
 #include "core/exact/rounding.h"
 #include "core/lanes/hit_lanes.h"
+#include "core/lanes/lanes_kernel.h"
 
 namespace ovc {
-
-template <class V>
-OVC_INLINE V load(const double* from) {
-    V lanes;
-    __builtin_memcpy(&lanes, from, sizeof(V));
-    return lanes;
-}
 
 template <class V>
 OVC_INLINE Vec3Of<V> load(const HitLanes::Vec& from, int lane) {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// round_hits() and cull() for any processor, and the choice of the widest vectors.
+// The functions by lanes for any processor, and the choice of the widest vectors.
 #include "core/lanes/cull_lanes_kernel.h"
 #include "core/lanes/hit_lanes_kernel.h"
+#include "core/lanes/ray_lanes_kernel.h"
 
 namespace ovc {
 
@@ -9,6 +10,10 @@ void round_hits_avx2(HitLanes& lanes); // lanes_avx2.cpp
 uint32_t cull_avx2(const CullRay& ray, CullLanes& lanes);
 void round_hits_avx512(HitLanes& lanes); // lanes_avx512.cpp
 uint32_t cull_avx512(const CullRay& ray, CullLanes& lanes);
+LanesAhead look_ahead_avx2(const LanesScene& scene, const RayLanes& rays);
+LanesAhead look_ahead_avx512(const LanesScene& scene, const RayLanes& rays);
+void to_frame_avx2(const LanesFrame& frame, const RayLanes& rays, LocalLanes& local);
+void to_frame_avx512(const LanesFrame& frame, const RayLanes& rays, LocalLanes& local);
 
 namespace {
 
@@ -48,6 +53,12 @@ static void round_hits_anywhere(HitLanes& lanes) {
 static uint32_t cull_anywhere(const CullRay& ray, CullLanes& lanes) {
     return cull_by<Two>(ray, lanes);
 }
+static LanesAhead look_ahead_anywhere(const LanesScene& scene, const RayLanes& rays) {
+    return look_ahead_by<Two>(scene, rays);
+}
+static void to_frame_anywhere(const LanesFrame& frame, const RayLanes& rays, LocalLanes& local) {
+    to_frame_by<Two>(frame, rays, local);
+}
 
 namespace {
 
@@ -78,6 +89,12 @@ std::vector<RoundHits> ways_to_round_hits() {
 std::vector<Cull> ways_to_cull() {
     return OVC_WAYS(cull);
 }
+std::vector<LookAhead> ways_to_look_ahead() {
+    return OVC_WAYS(look_ahead);
+}
+std::vector<ToFrame> ways_to_frame() {
+    return OVC_WAYS(to_frame);
+}
 
 void round_hits(HitLanes& lanes) {
     static const RoundHits widest = ways_to_round_hits().back();
@@ -86,6 +103,14 @@ void round_hits(HitLanes& lanes) {
 uint32_t cull(const CullRay& ray, CullLanes& lanes) {
     static const Cull widest = ways_to_cull().back();
     return widest(ray, lanes);
+}
+LanesAhead look_ahead(const LanesScene& scene, const RayLanes& rays) {
+    static const LookAhead widest = ways_to_look_ahead().back();
+    return widest(scene, rays);
+}
+void to_frame(const LanesFrame& frame, const RayLanes& rays, LocalLanes& local) {
+    static const ToFrame widest = ways_to_frame().back();
+    widest(frame, rays, local);
 }
 
 } // namespace ovc

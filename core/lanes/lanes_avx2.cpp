@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// round_hits() and cull() by four doubles at once. Compiled for AVX2 with FMA; see
+// The functions by lanes by four doubles at once. Compiled for AVX2 with FMA; see
 // hit_lanes_kernel.h.
 #include "core/lanes/cull_lanes_kernel.h"
 #include "core/lanes/hit_lanes_kernel.h"
+#include "core/lanes/ray_lanes_kernel.h"
 
 #include <immintrin.h>
 
@@ -26,6 +27,12 @@ void round_hits_avx2(HitLanes& lanes) {
 }
 uint32_t cull_avx2(const CullRay& ray, CullLanes& lanes) {
     return cull_by<Four>(ray, lanes);
+}
+LanesAhead look_ahead_avx2(const LanesScene& scene, const RayLanes& rays) {
+    return look_ahead_by<Four>(scene, rays);
+}
+void to_frame_avx2(const LanesFrame& frame, const RayLanes& rays, LocalLanes& local) {
+    to_frame_by<Four>(frame, rays, local);
 }
 
 } // namespace ovc

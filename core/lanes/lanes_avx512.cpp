@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// round_hits() and cull() by eight doubles at once. Compiled for AVX-512; see hit_lanes_kernel.h.
+// The functions by lanes by eight doubles at once. Compiled for AVX-512; see hit_lanes_kernel.h.
 #include "core/lanes/cull_lanes_kernel.h"
 #include "core/lanes/hit_lanes_kernel.h"
+#include "core/lanes/ray_lanes_kernel.h"
 
 #include <immintrin.h>
 
@@ -25,6 +26,12 @@ void round_hits_avx512(HitLanes& lanes) {
 }
 uint32_t cull_avx512(const CullRay& ray, CullLanes& lanes) {
     return cull_by<Eight>(ray, lanes);
+}
+LanesAhead look_ahead_avx512(const LanesScene& scene, const RayLanes& rays) {
+    return look_ahead_by<Eight>(scene, rays);
+}
+void to_frame_avx512(const LanesFrame& frame, const RayLanes& rays, LocalLanes& local) {
+    to_frame_by<Eight>(frame, rays, local);
 }
 
 } // namespace ovc

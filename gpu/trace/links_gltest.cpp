@@ -75,13 +75,14 @@ protected:
 
     /// Runs a pass of these rays; those that wait join the queues.
     void pass(std::vector<UnderWay>& rays, std::span<const uint32_t> some) {
-        std::vector<RayState> states(whole_blocks(some.size()));
+        std::vector<RayState> states(some.size());
         for (size_t j = 0; j < some.size(); ++j)
             states[j] = rays[some[j]].state();
         std::vector<Answer> answers(states.size());
         gl->run([&](GlState&) {
-            ASSERT_TRUE(tracer->submit(std::span(states).first(some.size())));
-            ASSERT_TRUE(tracer->collect(std::span(answers).first(some.size())));
+            SentRays sent = send(tracer->form(), states);
+            ASSERT_TRUE(tracer->submit(sent));
+            ASSERT_TRUE(tracer->collect(answers));
         });
         for (size_t j = 0; j < some.size(); ++j) {
             UnderWay& way = rays[some[j]];

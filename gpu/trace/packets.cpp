@@ -112,9 +112,6 @@ bool coherent(size_t rays, FunctionRef<LocalRay(size_t)> ray_at) {
 bool coherent(std::span<const LocalRay> rays) {
     return coherent(rays.size(), [&](size_t i) { return rays[i]; });
 }
-bool coherent(std::span<const ResumedRay> rays) {
-    return coherent(rays.size(), [&](size_t i) { return rays[i].ray; });
-}
 
 std::optional<std::vector<Parted>> part_packets(std::vector<LocalRay>& slots, size_t rays,
                                                 size_t most) {

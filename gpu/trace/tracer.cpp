@@ -26,7 +26,6 @@ constexpr size_t kMaxLostShare =
 constexpr size_t kLaneRays = 128;
 constexpr size_t kGroupsAThread = 4;
 constexpr size_t kLanesOfGpu = 65536;     // as many as a large GPU runs at once
-constexpr size_t kRayGrain = 1024;        // rays a task
 constexpr uint64_t kSmallestPool = 16384; // a page of some hundred triangles
 
 /// Returns how many packets each lane takes on average, with ray refill.
@@ -265,79 +264,23 @@ bool Tracer::is_ready(const KernelVariant& variant) const {
     return kernels_.is_ready(shader_config(variant));
 }
 
-void Tracer::upload(std::span<const RayState> rays) {
-    if (has_portals())
-        upload_world(rays);
-    else if (may_wait())
-        upload_local(rays, resumed_);
-    else
-        upload_local(rays, local_);
-}
-
-/// Uploads rays as they are, for a kernel that changes frames.
-void Tracer::upload_world(std::span<const RayState> rays) {
-    kind_.coherent = coherent(rays.size(), [&](size_t i) {
-        LocalTime unused;
-        return local_ray(scene_, rays[i].ray, OVC_NO_TRIANGLE, false, unused);
-    });
-    variant_ = options_.variants[kind_];
-    glNamedBufferSubData(ray_buffer_.id(), 0,
-                         GLsizeiptr(whole_blocks(rays.size()) * sizeof(RayState)), rays.data());
-    if (options_.certify)
-        return;
-    times_.resize(rays.size());
-    parallel_for(rays.size(), kRayGrain, [&](size_t first, size_t last) {
-        for (size_t i = first; i < last; ++i)
-            local_ray(scene_, rays[i].ray, OVC_NO_TRIANGLE, false, times_[i]);
-    });
-}
-
-/// Uploads rays in the frame of the top-level tree, and keeps the times that lead back from there.
-template <class Sent>
-void Tracer::upload_local(std::span<const RayState> rays, std::vector<Sent>& sent) {
-    sent.resize(whole_blocks(rays.size()));
-    times_.resize(options_.certify ? 0 : sent.size());
-    const auto convert = [&](const auto& frame) {
-        parallel_for(sent.size(), kRayGrain, [&](size_t first, size_t last) {
-            for (size_t i = first; i < last; ++i) {
-                const RayState& state = rays.data()[i]; // up to the next whole block: see submit()
-                LocalTime time;
-                const LocalRay ray = local_ray(frame, state.ray, state.skip, state.any_hit(), time);
-                if constexpr (std::is_same_v<Sent, LocalRay>)
-                    sent[i] = ray;
-                else
-                    sent[i] = {ray, state.key(), {}};
-                if (!options_.certify)
-                    times_[i] = time;
-            }
-        });
-    };
-    if (top_.way_in)
-        convert(*top_.way_in);
-    else
-        convert(scene_);
-    kind_.coherent = coherent(std::span<const Sent>(sent).first(rays.size()));
-    variant_ = options_.variants[kind_];
-    if (packs(variant_))
-        if (auto parted = part_packets(sent, rays.size(), max_slots_)) {
-            packets_ = true;
-            parted_ = std::move(*parted);
-        }
-    if (!parted_.empty())
-        slots_sent_ = parted_.back().slot + 1;
-    glNamedBufferSubData(ray_buffer_.id(), 0, GLsizeiptr(std::span(sent).size_bytes()),
-                         sent.data());
+RayForm Tracer::form() const {
+    const auto kind = has_portals() ? RayForm::Kind::World
+                      : may_wait()  ? RayForm::Kind::Resumed
+                                    : RayForm::Kind::Local;
+    return {kind, &scene_, top_.way_in ? &*top_.way_in : nullptr, !options_.certify};
 }
 
 /// Converts hits of fast precision to the form of Answer. The kernel gives t in the frame of the
 /// top-level tree, then u and v.
 void Tracer::come_back(std::span<Answer> answers) const {
-    assert(times_.size() >= answers.size());
+    const std::span<const LocalTime> times = sent_->times();
+    assert(times.size() >= answers.size());
     for (size_t i = 0; i < answers.size(); ++i) {
         if (answers[i].prim >= OVC_MAX_TRIANGLES)
             continue;
         const double local = std::bit_cast<float>(answers[i].words[0]);
-        const auto t = std::bit_cast<uint64_t>(times_[i].enter + local / times_[i].speed);
+        const auto t = std::bit_cast<uint64_t>(times[i].enter + local / times[i].speed);
         answers[i].words = {uint32_t(t), uint32_t(t >> 32), answers[i].words[1]};
     }
 }
@@ -376,14 +319,17 @@ ShaderConfig Tracer::shader_config(const KernelVariant& variant) const {
     return config;
 }
 
-Result<Done> Tracer::submit(std::span<const RayState> rays) {
-    assert(!rays.empty() && whole_blocks(rays.size()) * sizeof(RayState) <= ray_buffer_.bytes());
-    rays_sent_ = rays.size();
-    slots_sent_ = rays.size();
-    kind_ = {.any_hit = std::ranges::all_of(rays, &RayState::any_hit), .portals = has_portals()};
-    packets_ = false;
-    parted_.clear();
-    upload(rays);
+Result<Done> Tracer::submit(SentRays& rays) {
+    assert(rays.size() > 0);
+    sent_ = &rays;
+    rays.unpart();
+    kind_ = {.any_hit = rays.all_any_hit(), .portals = has_portals()};
+    kind_.coherent = rays.are_coherent();
+    variant_ = options_.variants[kind_];
+    packets_ = packs(variant_) && rays.part(max_slots_);
+    const std::span<const std::byte> bytes = rays.bytes();
+    assert(bytes.size() <= ray_buffer_.bytes());
+    glNamedBufferSubData(ray_buffer_.id(), 0, GLsizeiptr(bytes.size()), bytes.data());
     kernel_seconds_ = 0;
     if (const Result<Done> made = make_answers(); !made)
         return made;
@@ -408,16 +354,16 @@ Result<Done> Tracer::launch() {
                            GL_R32UI);
     size_t group_rays = size_t(config.group_size) * config.packet;
     if (config.refill)
-        group_rays *= packets_a_lane(slots_sent_, config.packet, variant_, device_.is_software);
+        group_rays *= packets_a_lane(sent_->slots(), config.packet, variant_, device_.is_software);
     const Stopwatch watch;
     if (device_.is_software)
         driver_threads_.start();
     else
         glBeginQuery(GL_TIME_ELAPSED, time_.id());
     if (words_)
-        words_->dispatch(*program, slots_sent_, group_rays);
+        words_->dispatch(*program, sent_->slots(), group_rays);
     else
-        pixels_->draw(rays_sent_);
+        pixels_->draw(sent_->size());
     if (!device_.is_software)
         glEndQuery(GL_TIME_ELAPSED);
     glPopDebugGroup();
@@ -447,11 +393,11 @@ void Tracer::read(std::span<Answer> answers) {
         words_->read(answers);
     else
         pixels_->read(answers);
-    if (!parted_.empty()) {
-        parted_answers_.resize(slots_sent_ - rays_sent_);
-        words_->read(parted_answers_, rays_sent_);
-        for (const auto& [ray, slot] : parted_)
-            answers[ray] = parted_answers_[slot - rays_sent_];
+    if (const std::span<const Parted> parted = sent_->parted(); !parted.empty()) {
+        parted_answers_.resize(sent_->slots() - sent_->size());
+        words_->read(parted_answers_, sent_->size());
+        for (const auto& [ray, slot] : parted)
+            answers[ray] = parted_answers_[slot - sent_->size()];
     }
     if (!device_.is_software)
         kernel_seconds_ += time_.seconds();
@@ -474,7 +420,7 @@ bool Tracer::go_on_longer() {
 }
 
 Result<Done> Tracer::collect(std::span<Answer> answers) {
-    assert(answers.size() == rays_sent_);
+    assert(answers.size() == sent_->size());
     read(answers);
     while (lost_many(answers) && go_on_longer()) {
         // If all pages fit they stay in place. Otherwise pages may have been evicted since the

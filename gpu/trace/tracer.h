@@ -12,8 +12,8 @@
 #include "gpu/gl/workarounds.h"
 #include "gpu/page/top_level.h"
 #include "gpu/trace/answers.h"
-#include "gpu/trace/packets.h"
 #include "gpu/trace/pool.h"
+#include "gpu/trace/sent_rays.h"
 #include "gpu/tuning/kernel_variant.h"
 #include "shaders/layout.h"
 
@@ -24,19 +24,6 @@
 #include <vector>
 
 namespace ovc {
-
-/// A ray on its way, in the layout of shaders/layout.h. It is in the world's coordinates, finite,
-/// and its direction has finite reciprocals, as can_walk() of kdtree/restart.h asks.
-struct RayState {
-    Ray ray{dvec3(0), 0, dvec3(0, 0, 1), -1}; // t_max < t_min: no ray
-    std::array<uint32_t, 2> zeros{};
-    uint32_t skip = OVC_NO_TRIANGLE; // number of a triangle that the ray does not see
-    uint32_t asks = 0; // the resume key, or 0; OVC_RAY_ANY_HIT is added if any hit will do
-
-    bool any_hit() const { return (asks & OVC_RAY_ANY_HIT) != 0; }
-    uint32_t key() const { return asks & ~OVC_RAY_ANY_HIT; }
-};
-static_assert(sizeof(RayState) == OVC_RAY_TEXELS * sizeof(uvec4));
 
 /// The precision of all passes, and the variants of their kernels.
 struct PassOptions {
@@ -115,12 +102,14 @@ public:
         return all_fit_ && pool_.residency().resident_count() == page_data_.size();
     }
 
-    /// Sends the rays (at most plan.batch_rays) on their way through the pages that are resident
-    /// now. Reads the storage of `rays` up to the next whole block: see whole_blocks(). An answer
-    /// is for all pages on the way up to the one that it names, for which the ray waits, or for all
-    /// pages. Pages moved in after this call serve the next pass; they may be uploaded while this
-    /// one runs. If all rays ask whether anything is hit, answers do not tell which triangle is.
-    Result<Done> submit(std::span<const RayState> rays);
+    /// How submit() wants its rays, until the next update(). At any time.
+    RayForm form() const;
+    /// Sends the rays (at least one, at most plan.batch_rays) on their way through the pages that
+    /// are resident now. An answer is for all pages on the way up to the one that it names, for
+    /// which the ray waits, or for all pages. Pages moved in after this call serve the next pass;
+    /// they may be uploaded while this one runs. If all rays ask whether anything is hit, answers
+    /// do not tell which triangle is. The rays, of which some may be moved, live until collect().
+    Result<Done> submit(SentRays& rays);
     /// Takes these variants from now on.
     void use(const ChosenVariants& variants) { options_.variants = variants; }
     /// The kind of the rays that were submitted last.
@@ -156,8 +145,6 @@ private:
     bool has_portals() const { return !top_.portals.empty(); }
     /// Whether rays of the pass may have to wait for a page.
     bool may_wait() const { return !all_fit_; }
-    void upload(std::span<const RayState> rays);
-    void upload_world(std::span<const RayState> rays);
     void come_back(std::span<Answer> answers) const;
     ShaderConfig shader_config(const KernelVariant& variant) const;
     Result<Done> make_answers();
@@ -172,8 +159,6 @@ private:
     void say_where(uint32_t leaf);
     void upload_top_level();
     uint32_t way_to(uint32_t leaf, const Link& link) const;
-    template <class Sent>
-    void upload_local(std::span<const RayState> rays, std::vector<Sent>& sent);
 
     std::unique_ptr<Ledger> ledger_; // the objects below keep its address
     KernelCache& kernels_;
@@ -188,17 +173,12 @@ private:
     const bool registers_lose_words_ = needs(Workaround::ShortRegisterStack);
     const bool finishes_passes_ = needs(Workaround::FinishedPass);
     const TopLevel& top_;
-    bool all_fit_;                    // the pool has room for all pages and the tree
-    Leaf scene_;                      // the whole scene as one leaf: the top-level tree's frame
-    std::vector<LocalRay> local_;     // rays of the pass, if all pages fit
-    std::vector<ResumedRay> resumed_; // rays of the pass, if they do not
-    std::vector<LocalTime> times_;    // of these rays, in fast precision
-    uint32_t stack_depth_;            // words with which no ray is lost
-    uint32_t max_slots_;              // of a pass
-    size_t rays_sent_ = 0;            // in the pass
-    size_t slots_sent_ = 0;           // those and the slots of parted rays
-    bool packets_ = false;            // the kernel takes rays two at a time
-    std::vector<Parted> parted_;
+    bool all_fit_;             // the pool has room for all pages and the tree
+    Leaf scene_;               // the whole scene as one leaf: the top-level tree's frame
+    SentRays* sent_ = nullptr; // rays of the pass
+    uint32_t stack_depth_;     // words with which no ray is lost
+    uint32_t max_slots_;       // of a pass
+    bool packets_ = false;     // the kernel takes rays two at a time
     std::vector<Answer> parted_answers_;
     gl::Buffer ray_buffer_;
     gl::BufferTexture rays_;

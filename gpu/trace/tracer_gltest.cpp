@@ -43,19 +43,18 @@ protected:
     }
 
     std::vector<Answer> trace(std::span<const Ray> rays, bool any_hit = false) {
-        const size_t rows = whole_blocks(rays.size());
-        std::vector<RayState> states(rows);
+        std::vector<RayState> states(rays.size());
         for (size_t i = 0; i < rays.size(); ++i)
             states[i] = {.ray = rays[i], .asks = any_hit ? OVC_RAY_ANY_HIT : 0};
-        std::vector<Answer> answers(rows);
+        std::vector<Answer> answers(rays.size());
         gl->run([&](GlState&) {
-            const Result<Done> sent = tracer->submit(std::span(states).first(rays.size()));
+            SentRays rays_sent = send(tracer->form(), states);
+            const Result<Done> sent = tracer->submit(rays_sent);
             ASSERT_TRUE(sent) << sent.error().message;
-            const Result<Done> back = tracer->collect(std::span(answers).first(rays.size()));
+            const Result<Done> back = tracer->collect(answers);
             ASSERT_TRUE(back) << back.error().message;
             EXPECT_GT(tracer->kernel_seconds(), 0);
         });
-        answers.resize(rays.size());
         return answers;
     }
 

@@ -9,7 +9,7 @@
 
 #include <algorithm>
 #include <cassert>
-#include <limits>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -70,36 +70,41 @@ private:
         // Each block writes its rays from its own beginning, then all are moved together: in order
         // and without holes, whichever thread takes which block.
         batch.rays.resize(count);
+        std::iota(batch.rays.begin(), batch.rays.end(), uint32_t(first));
+        batch.make_room(passes_.form());
         block_rays_.resize(blocks);
         parallel_for(blocks, 1, [&](size_t from, size_t to) {
-            for (size_t b = from; b < to; ++b) {
-                uint32_t* const rays = batch.rays.data() + b * kRaysPerTask;
-                uint32_t n = 0;
-                for (size_t i = b * kRaysPerTask; i < std::min((b + 1) * kRaysPerTask, count); ++i)
-                    if (resolver_.begins(uint32_t(first + i)))
-                        rays[n++] = uint32_t(first + i);
-                block_rays_[b] = n;
-            }
+            for (size_t b = from; b < to; ++b)
+                block_rays_[b] = begin_block(batch, b * kRaysPerTask);
         });
         size_t asked = 0;
         for (size_t b = 0; b < blocks; ++b) {
             const auto rays = batch.rays.begin() + ptrdiff_t(b * kRaysPerTask);
-            std::copy(rays, rays + block_rays_[b], batch.rays.begin() + ptrdiff_t(asked));
+            std::copy(rays, rays + ptrdiff_t(block_rays_[b]),
+                      batch.rays.begin() + ptrdiff_t(asked));
+            batch.sent.move_up(asked, b * kRaysPerTask, block_rays_[b]);
             asked += block_rays_[b];
         }
         batch.rays.resize(asked);
+        batch.sent.set_size(asked);
         next_ += count;
-        load(batch);
     }
 
-    void load(Batch& batch) const {
-        batch.make_room();
-        parallel_for(batch.rays.size(), kRaysPerTask, [&](size_t from, size_t to) {
-            for (size_t j = from; j < to; ++j) {
-                const double all = std::numeric_limits<double>::infinity();
-                batch.states[j] = resolver_.ray_state(batch.rays[j], all, 0);
-            }
+    /// Begins the rays of the block at `first`, and writes those that the kernel is to be asked
+    /// about from there on; returns how many.
+    size_t begin_block(Batch& batch, size_t first) {
+        const size_t count = std::min(kRaysPerTask, batch.rays.size() - first);
+        const std::span<uint32_t> rays = std::span(batch.rays).subspan(first, count);
+        size_t asked = 0;
+        in_lanes(rays, [&](std::span<const uint32_t> some, size_t) {
+            const RayStates states = resolver_.states(some);
+            const uint32_t begins = resolver_.begins(states, some);
+            resolver_.send(batch.sent, first + asked, states, some, begins);
+            for (size_t lane = 0; lane < some.size(); ++lane)
+                if (begins >> lane & 1)
+                    rays[asked++] = some[lane];
         });
+        return asked;
     }
 
     CallWatch& watch_;
@@ -107,7 +112,7 @@ private:
     const Query query_;
     Resolver<Query> resolver_;
     size_t next_ = 0; // the first ray of the query that has not begun
-    std::vector<uint32_t> block_rays_;
+    std::vector<size_t> block_rays_;
 };
 
 } // namespace ovc

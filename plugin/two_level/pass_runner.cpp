@@ -279,17 +279,15 @@ ChosenVariants PassRunner::variants(GlState& state) const {
 }
 
 /// Measures variants with the first of the rays that a pass has traced.
-void PassRunner::tune(GlState& state, std::span<const RayState> rays, const PassCost& pass) {
+void PassRunner::tune(GlState& state, SentRays& rays, const PassCost& pass) {
     const bool thorough = tracing_.options.variant == VariantChoice::Thorough;
     const TuningLimits limits = thorough ? TuningLimits::thorough() : TuningLimits{};
     const double rate = double(rays.size()) / std::max(pass.kernel_seconds, 1e-9);
     const size_t some = std::clamp<size_t>(size_t(limits.trial_seconds * rate),
                                            std::min<size_t>(32768, rays.size()), rays.size());
-    // A trial's rays end with a whole block, beyond which the next ones lie, which are none of it.
-    std::vector<RayState> sample(rays.begin(), rays.begin() + ptrdiff_t(some));
-    sample.resize(whole_blocks(some));
+    rays.unpart();
     const RayKind kind = tracer_->ray_kind();
-    TracerTrials trials(*tracer_, std::span(sample).first(some), log_);
+    TracerTrials trials(*tracer_, rays.first(some), log_);
     state.tuning->after_pass(kind, pass, limits, trials);
 }
 
@@ -297,8 +295,7 @@ Result<size_t> PassRunner::pass(Batch& batch, std::span<const uint32_t> wanted,
                                 const std::function<void()>& meanwhile) {
     const size_t count = batch.rays.size();
     assert(tracer_ && count > 0 && count <= plan_.batch_rays);
-    assert(batch.states.size() >= whole_blocks(count) && batch.answers.size() >= count);
-    std::fill_n(batch.states.begin() + ptrdiff_t(count), whole_blocks(count) - count, RayState());
+    assert(batch.sent.size() == count && batch.answers.size() >= count);
     Result<Done> done = Done{};
     bool alive = false;
     Moved moved;
@@ -309,7 +306,7 @@ Result<size_t> PassRunner::pass(Batch& batch, std::span<const uint32_t> wanted,
         if (!alive)
             return;
         tracer_->use(variants(state));
-        done = tracer_->submit(std::span(batch.states).first(count));
+        done = tracer_->submit(batch.sent);
         if (done)
             moved = move_in(wanted);
         if (done)
@@ -318,7 +315,7 @@ Result<size_t> PassRunner::pass(Batch& batch, std::span<const uint32_t> wanted,
         seconds = watch.seconds();
         kernel_seconds = tracer_->kernel_seconds();
         if (alive && done && measures())
-            tune(state, std::span(batch.states).first(count), {count, kernel_seconds, seconds});
+            tune(state, batch.sent, {count, kernel_seconds, seconds});
     };
     gl_.run_beside(work, meanwhile, [this] { tracing_.watch.keeps_on(); });
     if (!alive)

@@ -24,13 +24,13 @@ namespace ovc {
 struct Batch {
     std::vector<uint32_t> rays;       // their numbers in the query
     std::array<size_t, 3> of_waves{}; // the rays of each wave, which lie together
-    std::vector<RayState> states;     // at least one per ray, in whole blocks, as the next
-    std::vector<Answer> answers;
+    SentRays sent;                    // the same rays
+    std::vector<Answer> answers;      // at least one per ray
 
-    void make_room() {
-        const size_t room = std::max(whole_blocks(rays.size()), states.size());
-        states.resize(room);
-        answers.resize(room);
+    /// Makes room in `sent` and `answers` for the rays.
+    void make_room(const RayForm& form) {
+        sent.reset(form, rays.size());
+        answers.resize(std::max(rays.size(), answers.size()));
     }
 };
 
@@ -62,6 +62,8 @@ public:
     /// Returns for each page what moving it in costs, in bytes moved from memory.
     std::vector<uint64_t> costs() const;
 
+    /// How a pass wants its rays, within this use of the device.
+    RayForm form() const { return tracer_->form(); }
     /// Traces the rays of the batch (not empty, at most plan().batch_rays) in one pass; their
     /// answers go into the batch. Beside the pass, pages of `wanted` move in, and meanwhile() runs
     /// on this thread. Returns how many pages were moved. Error: the context is lost, or GL's.
@@ -101,7 +103,7 @@ private:
     bool takes_measured() const;
     bool measures() const;
     ChosenVariants variants(GlState& state) const;
-    void tune(GlState& state, std::span<const RayState> rays, const PassCost& pass);
+    void tune(GlState& state, SentRays& rays, const PassCost& pass);
     /// Whether the tracer's context is alive. Called on the context's thread.
     bool is_ours(const GlState& state) const {
         return state.generation == tracer_generation_ && state.context.alive();

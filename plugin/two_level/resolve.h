@@ -6,7 +6,6 @@
 #include "core/lanes/hit_batch.h"
 #include "core/system/parallel.h"
 #include "gpu/trace/tracer.h"
-#include "kdtree/restart.h"
 #include "plugin/fallback/exact_fallback.h"
 #include "plugin/two_level/candidates.h"
 #include "plugin/two_level/query.h"
@@ -14,6 +13,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <bit>
 #include <cassert>
 #include <cmath>
 #include <limits>
@@ -23,6 +23,18 @@
 namespace ovc {
 
 inline constexpr size_t kRaysPerTask = 256; // in parallel loops over rays that are traced
+
+/// Returns a bit for each of the first `count` lanes.
+inline uint32_t all_lanes(size_t count) {
+    return (1u << count) - 1;
+}
+
+/// Calls body(some, first) for rays by as many as there are lanes; first: the place of the first.
+template <class Body>
+void in_lanes(std::span<const uint32_t> rays, Body&& body) {
+    for (size_t first = 0; first < rays.size(); first += RayLanes::kCount)
+        body(rays.subspan(first, std::min<size_t>(RayLanes::kCount, rays.size() - first)), first);
+}
 
 /// Returns the candidates of an answer in certified precision that names triangles or OVC_MISS.
 inline Candidates candidates_of(const Answer& answer) {
@@ -53,7 +65,9 @@ public:
         : tracing_(tracing),
           scene_(tracing.scene),
           query_(query),
-          box_(scene_.level1.bounds.padded(scene_.level1.padding)) {}
+          ahead_{scene_.level1.bounds.empty(), scene_.level1.padding,
+                 LanesBox(scene_.level1.bounds),
+                 LanesBox(scene_.level1.bounds.padded(scene_.level1.padding))} {}
     ~Resolver() {
         ovc_statistics& statistics = tracing_.statistics;
         statistics.invalid_rays += invalid_;
@@ -67,39 +81,45 @@ public:
     /// Replaces the query where its arrays have moved or have more rays than before.
     void show(const Query& query) { query_ = query; }
 
-    /// Returns whether the kernel is to be asked about ray i. If not, this has answered the ray.
-    bool begins(uint32_t i) {
-        query_.set_miss(i);
-        if (!query_.rays[i].valid()) {
-            ++invalid_;
-            return false;
+    /// Returns the states in which these rays, at most RayLanes::kCount, set out.
+    RayStates states(std::span<const uint32_t> rays) const {
+        RayStates states{};
+        for (size_t lane = 0; lane < rays.size(); ++lane) {
+            const Ray ray = query_.rays[rays[lane]];
+            states.set(int(lane), {ray, {}, OVC_NO_TRIANGLE, Query::kAnyHit ? OVC_RAY_ANY_HIT : 0});
+            if (query_.without.empty())
+                continue;
+            const Exclusion without = exclusion(rays[lane]);
+            states.rays.from[lane] = PreparedRay::behind(ray, without.after).t_min;
+            states.skip[lane] = scene_.number_to_skip(ray, without);
         }
-        const PreparedRay p = prepared(i);
-        // This comes before the clip: where double cannot walk, rounding may carry a ray past the
-        // whole scene.
-        if (!can_walk(scene_.level1, p)) {
-            fall_back(i);
-            return false;
-        }
-        return !clip(p, box_, p.ray.t_min, p.ray.t_max).empty();
+        return states;
     }
 
-    /// Returns the state of ray i for a pass. Hits beyond t_end are of no interest. key: as
-    /// RayState::key().
-    RayState ray_state(uint32_t i, double t_end, uint32_t key) const {
-        query_.count_pass(i);
-        const Ray ray = query_.rays[i];
-        double t_min = ray.t_min;
-        uint32_t skip = OVC_NO_TRIANGLE;
-        if (!query_.without.empty()) {
-            const Exclusion without = exclusion(i);
-            t_min = PreparedRay::behind(ray, without.after).t_min;
-            skip = scene_.number_to_skip(query_.rays[i], without);
-        }
-        return {{ray.org, t_min, ray.dir, std::min(ray.t_max, t_end)},
-                {},
-                skip,
-                key | (Query::kAnyHit ? OVC_RAY_ANY_HIT : 0)};
+    /// Returns a bit for each of these rays, of which these are the states, about which the kernel
+    /// is to be asked. This has answered the others.
+    uint32_t begins(const RayStates& states, std::span<const uint32_t> rays) {
+        for (const uint32_t i : rays)
+            query_.set_miss(i);
+        const uint32_t all = all_lanes(rays.size());
+        const LanesAhead ahead = look_ahead(ahead_, states.rays);
+        const uint32_t valid = ahead.valid & all;
+        invalid_ += uint64_t(std::popcount(all & ~valid));
+        // This comes before the clip: where double cannot walk, rounding may carry a ray past the
+        // whole scene.
+        for (uint32_t lost = valid & ~ahead.walks; lost != 0; lost &= lost - 1)
+            fall_back(rays[size_t(std::countr_zero(lost))]);
+        return valid & ahead.walks & ahead.meets;
+    }
+
+    /// Writes those of the states of these rays that have a bit in `which` to the places from `at`
+    /// on; returns how many.
+    size_t send(SentRays& sent, size_t at, const RayStates& states, std::span<const uint32_t> rays,
+                uint32_t which) const {
+        for (size_t lane = 0; lane < rays.size(); ++lane)
+            if (which >> lane & 1)
+                query_.count_pass(rays[lane]);
+        return sent.put(at, states, which);
     }
 
     /// Enters the kernel's answers, one per ray, as far as they are certain or exact arithmetic
@@ -322,7 +342,7 @@ private:
     const Tracing tracing_;
     const BuiltScene& scene_;
     Query query_;
-    const Box box_; // around the scene; empty where it has no triangles
+    const LanesScene ahead_;
     std::atomic<uint64_t> invalid_{0};
     std::atomic<uint64_t> flagged_{0};
     std::atomic<uint64_t> retraced_{0};

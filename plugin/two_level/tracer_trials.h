@@ -16,10 +16,12 @@ namespace ovc {
 
 class TracerTrials final : public VariantTrials {
 public:
-    /// rays: some of the pass that the tracer has collected last, readable to the next whole block.
-    /// Both outlive this.
-    TracerTrials(Tracer& tracer, std::span<const RayState> rays, LogSink log)
-        : tracer_(tracer), rays_(rays), log_(std::move(log)), answers_(whole_blocks(rays.size())) {}
+    /// rays: some of the pass that the tracer has collected last. The tracer outlives this.
+    TracerTrials(Tracer& tracer, SentRays rays, LogSink log)
+        : tracer_(tracer),
+          rays_(std::move(rays)),
+          log_(std::move(log)),
+          answers_(whole_blocks(rays_.size())) {}
 
     bool can_run(const KernelVariant& variant) override { return tracer_.can_run(variant); }
     void begin(const KernelVariant& variant) override { tracer_.begin_to_compile(variant); }
@@ -61,7 +63,7 @@ private:
     }
 
     Tracer& tracer_;
-    const std::span<const RayState> rays_;
+    SentRays rays_;
     const LogSink log_;
     std::vector<Answer> answers_;
     std::vector<Answer> expected_; // of the variant that was timed first

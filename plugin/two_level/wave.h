@@ -33,10 +33,8 @@ public:
 
     /// Starts these rays, none of which is under way.
     void start(std::span<const uint32_t> rays) {
-        parallel_for(rays.size(), kRaysPerTask, [&](size_t from, size_t to) {
-            for (size_t j = from; j < to; ++j)
-                start_one(rays[j]);
-        });
+        parallel_for(rays.size(), kRaysPerTask,
+                     [&](size_t from, size_t to) { start_some(rays.subspan(from, to - from)); });
         send_on(rays);
     }
 
@@ -80,19 +78,25 @@ public:
     /// Returns the rays that were answered since the last call of this.
     std::vector<uint32_t> take_finished() { return std::exchange(finished_, {}); }
 
-    /// Puts rays that are ready into `states`, as many as there is room for, and their numbers into
-    /// `rays`; returns how many. May run beside a pass.
-    size_t load(std::span<uint32_t> rays, std::span<RayState> states) {
-        assert(states.size() >= rays.size());
+    /// Puts rays that are ready into `sent` from the place `first` on, as many as there is room
+    /// for, and their numbers into `rays`; returns how many. May run beside a pass.
+    size_t load(std::span<uint32_t> rays, SentRays& sent, size_t first) {
+        assert(sent.size() >= first + rays.size());
         const size_t count = std::min(ready_.size(), rays.size());
         std::copy_n(ready_.begin(), count, rays.begin());
         ready_.erase(ready_.begin(), ready_.begin() + ptrdiff_t(count));
         loaded_ += count;
         parallel_for(count, kRaysPerTask, [&](size_t from, size_t to) {
-            for (size_t j = from; j < to; ++j) {
-                const State& at = states_[rays[j]];
-                states[j] = resolver_.ray_state(rays[j], at.t_end, at.key);
-            }
+            in_lanes(rays.subspan(from, to - from), [&](std::span<const uint32_t> some, size_t j) {
+                RayStates states = resolver_.states(some);
+                for (size_t lane = 0; lane < some.size(); ++lane) {
+                    const State& at = states_[some[lane]];
+                    double& t_max = states.rays.t_max[lane];
+                    t_max = std::min(t_max, at.t_end);
+                    states.asks[lane] |= at.key;
+                }
+                resolver_.send(sent, first + from + j, states, some, all_lanes(some.size()));
+            });
         });
         return count;
     }
@@ -134,10 +138,14 @@ private:
         send_on(rays);
     }
 
-    void start_one(uint32_t i) {
-        states_[i] = {};
-        if (resolver_.begins(i))
-            states_[i] = {resolver_.query().rays[i].t_max, 0, State::Ready};
+    void start_some(std::span<const uint32_t> rays) {
+        in_lanes(rays, [&](std::span<const uint32_t> some, size_t) {
+            const RayStates states = resolver_.states(some);
+            const uint32_t begins = resolver_.begins(states, some);
+            for (size_t lane = 0; lane < some.size(); ++lane)
+                states_[some[lane]] =
+                    begins >> lane & 1 ? State{states.rays.t_max[lane], 0, State::Ready} : State{};
+        });
     }
 
     void send_on(std::span<const uint32_t> rays) {
@@ -173,7 +181,7 @@ private:
             for (size_t j = 0; j < answered.size(); ++j)
                 if (!counts[j]) {
                     resolver_.query().pass_by(answered[j]);
-                    start_one(answered[j]); // the exact fallback may answer it at once
+                    start_some(std::span(&answered[j], 1)); // the exact fallback may answer it
                     answered[passed_by++] = answered[j];
                 }
             answered.resize(passed_by);

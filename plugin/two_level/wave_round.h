@@ -111,11 +111,10 @@ private:
     /// Fills the batch with rays that are ready.
     void load(Batch& batch, size_t max_rays) {
         batch.rays.resize(std::min(ready(), max_rays));
-        batch.make_room();
+        batch.make_room(passes_.form());
         size_t first = 0, k = 0;
         each([&](auto& wave) {
-            const size_t count = wave.load(std::span(batch.rays).subspan(first),
-                                           std::span(batch.states).subspan(first));
+            const size_t count = wave.load(std::span(batch.rays).subspan(first), batch.sent, first);
             batch.of_waves[k++] = count;
             first += count;
         });

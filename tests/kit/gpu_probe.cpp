@@ -98,7 +98,7 @@ struct MovingScene {
             pages.push_back(build_page(soup, numbers, leaf));
         top = build_top_level(pages, pages.size());
         test::Random random(2);
-        rays.resize(whole_blocks(1 << 17));
+        rays.resize(1 << 17);
         for (RayState& state : rays)
             state.ray = {random.point(0, 1), 0, random.point(-1, 1)};
     }
@@ -117,6 +117,7 @@ Result<std::string> overlap(GlState& state, const DeviceInfo& device, double sec
     if (!tracer)
         return tracer.error();
     const size_t count = std::min<size_t>(scene.rays.size(), plan.batch_rays);
+    SentRays rays = send((*tracer)->form(), std::span(scene.rays).first(count));
     std::vector<Answer> answers(count);
     double pass = 1e9, move = 1e9, both = 1e9, first = 0;
     uint64_t moved = 0;
@@ -124,7 +125,7 @@ Result<std::string> overlap(GlState& state, const DeviceInfo& device, double sec
     for (size_t round = 0; round < 3 || watch.seconds() < seconds; ++round) {
         const auto traced = [&](bool moves) {
             const Stopwatch one;
-            const Result<Done> sent = (*tracer)->submit(std::span(scene.rays).first(count));
+            const Result<Done> sent = (*tracer)->submit(rays);
             if (moves)
                 moved = (*tracer)->bring((*tracer)->missing()).bytes;
             const Result<Done> done = sent ? (*tracer)->collect(answers) : sent;

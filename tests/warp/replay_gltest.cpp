@@ -18,7 +18,7 @@ protected:
     /// Returns what the kernel answers, with its counts.
     std::vector<Answer> trace(const PooledScene& scene, const KernelVariant& variant,
                               std::span<const Ray> rays, bool any_hit) {
-        std::vector<RayState> states(whole_blocks(rays.size()));
+        std::vector<RayState> states(rays.size());
         for (size_t i = 0; i < rays.size(); ++i)
             states[i] = {.ray = rays[i], .asks = any_hit ? OVC_RAY_ANY_HIT : 0};
         std::vector<Answer> answers(rays.size());
@@ -30,7 +30,8 @@ protected:
             ASSERT_TRUE(tracer) << tracer.error().message;
             (*tracer)->bring((*tracer)->missing());
             ASSERT_TRUE((*tracer)->all_resident());
-            ASSERT_TRUE((*tracer)->submit(std::span(states).first(rays.size())));
+            SentRays sent = send((*tracer)->form(), states);
+            ASSERT_TRUE((*tracer)->submit(sent));
             ASSERT_TRUE((*tracer)->collect(answers));
         });
         return answers;

@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: Apache-2.0
+// Writes rays in the layout that the kernel reads.
+#include "gpu/trace/sent_rays.h"
+
+#include <algorithm>
+#include <cassert>
+#include <type_traits>
+
+namespace ovc {
+namespace {
+
+/// The type of the elements of a vector.
+template <class Rays>
+using RayOf = typename std::remove_cvref_t<Rays>::value_type;
+
+template <class Rays>
+constexpr bool is_world = std::is_same_v<RayOf<Rays>, RayState>;
+
+LocalRay no_ray() {
+    LocalRay none{};
+    none.t_end = OVC_NO_RAY;
+    return none;
+}
+
+void set_none(RayState& ray) {
+    ray = {};
+}
+void set_none(LocalRay& ray) {
+    ray = no_ray();
+}
+void set_none(ResumedRay& ray) {
+    ray = {no_ray(), 0, {}};
+}
+
+bool is_any_hit(const RayState& ray) {
+    return ray.any_hit();
+}
+bool is_any_hit(const LocalRay& ray) {
+    return (ray.asks & OVC_RAY_ANY_HIT) != 0;
+}
+bool is_any_hit(const ResumedRay& ray) {
+    return is_any_hit(ray.ray);
+}
+
+void write(LocalRay& to, const LocalRay& ray, uint32_t) {
+    to = ray;
+}
+void write(ResumedRay& to, const LocalRay& ray, uint32_t asks) {
+    to = {ray, asks & ~OVC_RAY_ANY_HIT, {}};
+}
+
+LanesFrame lanes_frame(const Leaf& leaf) {
+    LanesFrame frame;
+    frame.box = LanesBox(leaf.box);
+    for (int axis = 0; axis < 3; ++axis)
+        frame.origin[axis] = leaf.frame.origin[axis];
+    frame.scale = leaf.frame.scale;
+    frame.max_reach = OVC_MAX_LEAF_SIZES;
+    frame.no_ray = OVC_NO_RAY;
+    frame.undecidable = OVC_UNDECIDABLE;
+    return frame;
+}
+
+/// Returns the ray of a lane as local_ray() does.
+LocalRay ray_of(const LocalLanes& local, int lane, uint32_t skip, uint32_t asks) {
+    return {{local.org[0][lane], local.org[1][lane], local.org[2][lane]},
+            local.t_end[lane],
+            {local.dir[0][lane], local.dir[1][lane], local.dir[2][lane]},
+            std::min<uint32_t>(skip, OVC_SKIPS_NONE) | (asks & OVC_RAY_ANY_HIT)};
+}
+
+} // namespace
+
+void RayStates::set(int lane, const RayState& state) {
+    for (int axis = 0; axis < 3; ++axis) {
+        rays.org[axis][lane] = state.ray.org[axis];
+        rays.dir[axis][lane] = state.ray.dir[axis];
+    }
+    rays.t_min[lane] = rays.from[lane] = state.ray.t_min;
+    rays.t_max[lane] = state.ray.t_max;
+    skip[size_t(lane)] = state.skip;
+    asks[size_t(lane)] = state.asks;
+}
+
+RayState RayStates::state(int lane) const {
+    const auto vector = [&](const auto& v) { return dvec3(v[0][lane], v[1][lane], v[2][lane]); };
+    return {{vector(rays.org), rays.from[lane], vector(rays.dir), rays.t_max[lane]},
+            {},
+            skip[size_t(lane)],
+            asks[size_t(lane)]};
+}
+
+void SentRays::reset(const RayForm& form, size_t rays) {
+    form_ = form;
+    if (form.kind == RayForm::Kind::World) {
+        if (rays_.index() != 2)
+            rays_.emplace<2>();
+    } else {
+        const size_t index = form.kind == RayForm::Kind::Local ? 0 : 1;
+        if (rays_.index() != index)
+            index == 0 ? void(rays_.emplace<0>()) : void(rays_.emplace<1>());
+        frame_ = lanes_frame(*form.scene);
+    }
+    parted_.clear();
+    std::visit([&](auto& all) { all.resize(std::max(all.size(), whole_blocks(rays))); }, rays_);
+    times_.resize(form.keeps_times ? whole_blocks(rays) : 0);
+    set_size(rays);
+}
+
+void SentRays::set_size(size_t rays) {
+    size_ = rays;
+    std::visit(
+        [&](auto& all) {
+            assert(all.size() >= whole_blocks(rays));
+            for (size_t i = rays; i < whole_blocks(rays); ++i)
+                set_none(all[i]);
+        },
+        rays_);
+}
+
+size_t SentRays::put(size_t at, const RayStates& states, uint32_t which) {
+    const bool in_lanes = form_.kind != RayForm::Kind::World && !form_.way_in;
+    LocalLanes local;
+    if (in_lanes)
+        to_frame(frame_, states.rays, local);
+    size_t i = at;
+    const auto put_one = [&](auto& all, int lane) {
+        const uint32_t skip = states.skip[size_t(lane)], asks = states.asks[size_t(lane)];
+        LocalTime time;
+        if (in_lanes)
+            time = {local.enter[lane], local.speed[lane]};
+        if constexpr (is_world<decltype(all)>) {
+            all[i] = states.state(lane);
+            if (form_.keeps_times)
+                local_ray(*form_.scene, all[i].ray, OVC_NO_TRIANGLE, false, time);
+        } else {
+            write(all[i],
+                  in_lanes ? ray_of(local, lane, skip, asks)
+                           : local_ray(*form_.way_in, states.state(lane).ray, skip,
+                                       (asks & OVC_RAY_ANY_HIT) != 0, time),
+                  asks);
+        }
+        if (form_.keeps_times)
+            times_[i] = time;
+        ++i;
+    };
+    std::visit(
+        [&](auto& all) {
+            for (int lane = 0; lane < RayLanes::kCount; ++lane)
+                if (which >> lane & 1)
+                    put_one(all, lane);
+        },
+        rays_);
+    return i - at;
+}
+
+void SentRays::move_up(size_t to, size_t from, size_t count) {
+    assert(to <= from);
+    if (to == from)
+        return;
+    const auto move = [&](auto& all) {
+        std::copy_n(all.begin() + ptrdiff_t(from), count, all.begin() + ptrdiff_t(to));
+    };
+    std::visit(move, rays_);
+    if (form_.keeps_times)
+        move(times_);
+}
+
+bool SentRays::all_any_hit() const {
+    return std::visit(
+        [&](const auto& all) {
+            return std::all_of(all.begin(), all.begin() + ptrdiff_t(size_),
+                               [](const auto& ray) { return is_any_hit(ray); });
+        },
+        rays_);
+}
+
+/// Returns ray i in the frame of the scene or of the top-level tree.
+LocalRay SentRays::local_ray_of(size_t i) const {
+    if (const auto* local = std::get_if<std::vector<LocalRay>>(&rays_))
+        return (*local)[i];
+    if (const auto* resumed = std::get_if<std::vector<ResumedRay>>(&rays_))
+        return (*resumed)[i].ray;
+    LocalTime unused;
+    return local_ray(*form_.scene, std::get<std::vector<RayState>>(rays_)[i].ray, OVC_NO_TRIANGLE,
+                     false, unused);
+}
+
+bool SentRays::are_coherent() const {
+    return coherent(size_, [&](size_t i) { return local_ray_of(i); });
+}
+
+bool SentRays::part(size_t most) {
+    assert(parted_.empty());
+    return std::visit(
+        [&](auto& all) {
+            if constexpr (is_world<decltype(all)>) {
+                return false;
+            } else {
+                all.resize(whole_blocks(size_));
+                auto parted = part_packets(all, size_, most);
+                if (parted)
+                    parted_ = std::move(*parted);
+                return parted.has_value();
+            }
+        },
+        rays_);
+}
+
+void SentRays::unpart() {
+    if (parted_.empty())
+        return;
+    std::visit(
+        [&](auto& all) {
+            for (const auto& [ray, slot] : parted_)
+                all[ray] = all[slot];
+        },
+        rays_);
+    parted_.clear();
+    set_size(size_);
+}
+
+std::span<const std::byte> SentRays::bytes() const {
+    return std::visit(
+        [&](const auto& all) { return std::as_bytes(std::span(all).first(whole_blocks(slots()))); },
+        rays_);
+}
+
+SentRays SentRays::first(size_t rays) const {
+    assert(parted_.empty() && rays <= size_);
+    SentRays some;
+    some.reset(form_, rays);
+    std::visit(
+        [&](const auto& all) {
+            auto& copy = std::get<std::remove_cvref_t<decltype(all)>>(some.rays_);
+            std::copy_n(all.begin(), rays, copy.begin());
+        },
+        rays_);
+    if (form_.keeps_times)
+        std::copy_n(times_.begin(), rays, some.times_.begin());
+    return some;
+}
+
+SentRays send(const RayForm& form, std::span<const RayState> states) {
+    SentRays sent;
+    sent.reset(form, states.size());
+    for (size_t i = 0; i < states.size(); i += RayLanes::kCount) {
+        const size_t count = std::min<size_t>(RayLanes::kCount, states.size() - i);
+        RayStates some{};
+        for (size_t lane = 0; lane < count; ++lane)
+            some.set(int(lane), states[i + lane]);
+        sent.put(i, some, (1u << count) - 1);
+    }
+    return sent;
+}
+
+} // namespace ovc

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+// SentRays: the rays of a pass in the layout that the kernel reads. Whoever has rays for a pass
+// writes them here, eight at a time, beside the pass before.
+#pragma once
+
+#include "core/lanes/ray_lanes.h"
+#include "gpu/trace/answers.h"
+#include "gpu/trace/local_ray.h"
+#include "gpu/trace/packets.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <variant>
+#include <vector>
+
+namespace ovc {
+
+/// A ray on its way, in the layout of shaders/layout.h. It is in the world's coordinates, finite,
+/// and its direction has finite reciprocals, as can_walk() of kdtree/restart.h asks.
+struct RayState {
+    Ray ray{dvec3(0), 0, dvec3(0, 0, 1), -1}; // t_max < t_min: no ray
+    std::array<uint32_t, 2> zeros{};
+    uint32_t skip = OVC_NO_TRIANGLE; // number of a triangle that the ray does not see
+    uint32_t asks = 0; // the resume key, or 0; OVC_RAY_ANY_HIT is added if any hit will do
+
+    bool any_hit() const { return (asks & OVC_RAY_ANY_HIT) != 0; }
+    uint32_t key() const { return asks & ~OVC_RAY_ANY_HIT; }
+};
+static_assert(sizeof(RayState) == OVC_RAY_TEXELS * sizeof(uvec4));
+
+/// Eight ray states. Hits before RayLanes::from or beyond t_max are of no interest.
+struct RayStates {
+    RayLanes rays;
+    std::array<uint32_t, RayLanes::kCount> skip, asks; // as in RayState
+
+    void set(int lane, const RayState& state);
+    RayState state(int lane) const;
+};
+
+/// How a kernel wants its rays. The frames outlive all that is sent so.
+struct RayForm {
+    enum class Kind {
+        World,   // RayState: the kernel changes frames
+        Local,   // LocalRay: in the frame of the top-level tree
+        Resumed, // ResumedRay: the same, and rays may wait for pages
+    };
+    Kind kind = Kind::Local;
+    const Leaf* scene = nullptr;    // the frame of the scene
+    const Portal* way_in = nullptr; // the frame of the top-level tree where it is another
+    bool keeps_times = false;       // fast precision: t comes back in the frame
+};
+
+class SentRays {
+public:
+    /// Makes room for so many rays of a form, all of which are no rays until put() is called.
+    void reset(const RayForm& form, size_t rays);
+    /// Writes those of the states that have a bit in `which`, to the places from `at` on; returns
+    /// their number. Several threads may write to different places.
+    size_t put(size_t at, const RayStates& states, uint32_t which);
+    /// Moves `count` rays to places before.
+    void move_up(size_t to, size_t from, size_t count);
+    /// Sets how many rays there are, of those that there is room for.
+    void set_size(size_t rays);
+    size_t size() const { return size_; }
+
+    bool all_any_hit() const;
+    /// Whether rays suit packets (gpu/trace/packets.h).
+    bool are_coherent() const;
+    /// Parts packets, which are not parted yet; there are at most `most` slots. Returns whether
+    /// packets are of use.
+    bool part(size_t most);
+    /// Takes part() back.
+    void unpart();
+    std::span<const Parted> parted() const { return parted_; }
+    /// How many slots rays take: more than size() where packets were parted.
+    size_t slots() const { return parted_.empty() ? size_ : parted_.back().slot + 1; }
+
+    /// Whole blocks of rays, as the kernel reads them.
+    std::span<const std::byte> bytes() const;
+    /// The times of all rays; only if RayForm::keeps_times.
+    std::span<const LocalTime> times() const { return times_; }
+    /// Returns a copy of the first rays, of which none is parted.
+    SentRays first(size_t rays) const;
+
+private:
+    LocalRay local_ray_of(size_t i) const;
+
+    RayForm form_;
+    LanesFrame frame_;
+    size_t size_ = 0;
+    /// In whole blocks.
+    std::variant<std::vector<LocalRay>, std::vector<ResumedRay>, std::vector<RayState>> rays_;
+    std::vector<LocalTime> times_;
+    std::vector<Parted> parted_;
+};
+
+/// Writes all the states in a form: for callers to whom it does not matter how long that takes.
+SentRays send(const RayForm& form, std::span<const RayState> states);
+
+} // namespace ovc
