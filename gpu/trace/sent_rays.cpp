@@ -71,17 +71,6 @@ LocalRay ray_of(const LocalLanes& local, int lane, uint32_t skip, uint32_t asks)
 
 } // namespace
 
-void RayStates::set(int lane, const RayState& state) {
-    for (int axis = 0; axis < 3; ++axis) {
-        rays.org[axis][lane] = state.ray.org[axis];
-        rays.dir[axis][lane] = state.ray.dir[axis];
-    }
-    rays.t_min[lane] = rays.from[lane] = state.ray.t_min;
-    rays.t_max[lane] = state.ray.t_max;
-    skip[size_t(lane)] = state.skip;
-    asks[size_t(lane)] = state.asks;
-}
-
 RayState RayStates::state(int lane) const {
     const auto vector = [&](const auto& v) { return dvec3(v[0][lane], v[1][lane], v[2][lane]); };
     return {{vector(rays.org), rays.from[lane], vector(rays.dir), rays.t_max[lane]},
@@ -246,9 +235,11 @@ SentRays send(const RayForm& form, std::span<const RayState> states) {
     sent.reset(form, states.size());
     for (size_t i = 0; i < states.size(); i += RayLanes::kCount) {
         const size_t count = std::min<size_t>(RayLanes::kCount, states.size() - i);
-        RayStates some{};
-        for (size_t lane = 0; lane < count; ++lane)
-            some.set(int(lane), states[i + lane]);
+        RayStates some;
+        for (size_t lane = 0; lane < count; ++lane) {
+            const RayState& state = states[i + lane];
+            some.set(int(lane), state.ray, state.skip, state.asks);
+        }
         sent.put(i, some, (1u << count) - 1);
     }
     return sent;

@@ -30,12 +30,23 @@ struct RayState {
 };
 static_assert(sizeof(RayState) == OVC_RAY_TEXELS * sizeof(uvec4));
 
-/// Eight ray states. Hits before RayLanes::from or beyond t_max are of no interest.
+/// Eight ray states; lanes that are not set may hold anything. Hits before RayLanes::from or beyond
+/// t_max are of no interest.
 struct RayStates {
     RayLanes rays;
     std::array<uint32_t, RayLanes::kCount> skip, asks; // as in RayState
 
-    void set(int lane, const RayState& state);
+    /// asks: as RayState has it.
+    void set(int lane, const Ray& ray, uint32_t skip_number, uint32_t asks_for) {
+        for (int axis = 0; axis < 3; ++axis) {
+            rays.org[axis][lane] = ray.org[axis];
+            rays.dir[axis][lane] = ray.dir[axis];
+        }
+        rays.t_min[lane] = rays.from[lane] = ray.t_min;
+        rays.t_max[lane] = ray.t_max;
+        skip[size_t(lane)] = skip_number;
+        asks[size_t(lane)] = asks_for;
+    }
     RayState state(int lane) const;
 };
 

@@ -41,7 +41,7 @@ const double kOdd[] = {0,     -0.0,  1,         -1,         2.5,  1e-300, 1e-310
 RayStates eight(std::span<const Ray> rays) {
     RayStates states{};
     for (int lane = 0; lane < RayLanes::kCount; ++lane)
-        states.set(lane, {.ray = rays[size_t(lane)], .skip = uint32_t(lane)});
+        states.set(lane, rays[size_t(lane)], uint32_t(lane), 0);
     return states;
 }
 

@@ -83,12 +83,14 @@ public:
 
     /// Returns the states in which these rays, at most RayLanes::kCount, set out.
     RayStates states(std::span<const uint32_t> rays) const {
-        RayStates states{};
+        constexpr uint32_t asks = Query::kAnyHit ? OVC_RAY_ANY_HIT : 0;
+        RayStates states;
+        for (size_t lane = 0; lane < rays.size(); ++lane)
+            states.set(int(lane), query_.rays[rays[lane]], OVC_NO_TRIANGLE, asks);
+        if (query_.without.empty())
+            return states;
         for (size_t lane = 0; lane < rays.size(); ++lane) {
             const Ray ray = query_.rays[rays[lane]];
-            states.set(int(lane), {ray, {}, OVC_NO_TRIANGLE, Query::kAnyHit ? OVC_RAY_ANY_HIT : 0});
-            if (query_.without.empty())
-                continue;
             const Exclusion without = exclusion(rays[lane]);
             states.rays.from[lane] = PreparedRay::behind(ray, without.after).t_min;
             states.skip[lane] = scene_.number_to_skip(ray, without);
