@@ -3,12 +3,15 @@
 #pragma once
 
 #include "host/bench/bench.h"
+#include "host/bench/paired_ratio.h"
 #include "host/bench/programs/import_cost.h"
 #include "host/bench/programs/programs.h"
 
+#include <array>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace ovc {
@@ -23,28 +26,46 @@ struct Bar {
     double aim = 0;
     std::optional<double> measured;
     std::string note; // the reason where nothing was measured, else what the figure means
+    std::optional<PairedRatio> turns = {}; // where `measured` is its median
 
-    bool passed() const;
+    /// Whether the figure would hold.
+    bool passed() const { return measured && holds(*measured); }
+    /// Whether turns of the measurement differ by more than the figure lies off the bar.
+    bool is_too_noisy() const { return turns && holds(turns->low) != holds(turns->high); }
+
+private:
+    bool holds(double figure) const {
+        return better == Better::More ? figure >= at_least : figure <= at_least;
+    }
 };
 
-/// Returns "passed", "failed", or "skipped" where nothing was measured.
+/// Returns "passed" or "failed"; "too noisy" where the turns do not tell; "skipped" where nothing
+/// was measured.
 std::string_view verdict(const Bar& bar);
 
-/// Returns the kernel seconds of Embree's robust mode and of the CPU KDT in float divided by ours,
-/// and the time of a frame in certified precision divided by that in fast. Contenders: certified,
-/// fast, embree-robust, cpu-float-kdtree.
-std::vector<Bar> kernel_bars(const BenchResult& mesh);
-/// Returns a line for each set of rays: kernel seconds of Embree's high quality divided by ours.
-std::vector<Bar> high_quality_bars(const BenchResult& scene, const std::string& what);
+/// What is promised of a ratio.
+struct Promise {
+    double at_least, aim;
+};
+/// The same for primary, shadow and diffuse rays.
+using PromiseOfSets = std::array<Promise, 3>;
+
+/// Returns a line for each set of rays: the peer's kernel seconds divided by ours, certified.
+std::vector<Bar> kernel_bars(const BenchResult& scene, const std::string& what,
+                             std::string_view peer, const PromiseOfSets& promises);
+/// Returns the same of the seconds from call to return.
+std::vector<Bar> call_bars(const BenchResult& scene, const std::string& what, std::string_view peer,
+                           const PromiseOfSets& promises);
+/// Returns the time of a frame in certified precision divided by that in fast.
+Bar certify_bar(const BenchResult& mesh);
+/// Returns the call seconds of a ray at a side or corner divided by those of a primary ray.
+Bar edges_bar(const BenchResult& mesh);
 /// Returns call seconds, summed over all sets of rays, divided by those of one leaf. Entrants are
 /// certified with several numbers of leaves, the first with one leaf.
 std::vector<Bar> leaves_bars(const BenchResult& sweep);
 /// Returns kernel seconds divided by those of one leaf, for the worst set of rays. Entrants are as
 /// above.
 std::vector<Bar> leaves_of_scene_bars(const BenchResult& sweep, const std::string& what);
-/// Returns kernel seconds of Embree's robust mode divided by ours, with the plugin's own choice of
-/// leaves.
-std::vector<Bar> default_leaves_bars(const BenchResult& scene, const std::string& what);
 /// Returns the frame's call seconds under a budget divided by those with all pages resident.
 /// Entrants: certified with all pages resident, then with the budget.
 Bar budget_bar(const BenchResult& sweep);
@@ -59,6 +80,8 @@ Bar skipped_bar(std::string what, std::string why);
 
 /// Returns Markdown and a sentence on how many lines hold, with a line end.
 std::string bars_table(std::span<const Bar> bars);
+/// Returns a sentence that names the lines which failed; "" where none did.
+std::string failed_bars(std::span<const Bar> bars);
 std::string bars_json(std::span<const Bar> bars, std::span<const BenchResult> results,
                       const ProgramsResult* programs);
 

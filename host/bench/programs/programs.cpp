@@ -178,12 +178,12 @@ Result<ProgramsResult> race_programs(const std::string& mesh, const Soup& soup, 
     return result;
 }
 
-std::optional<double> times_as_fast(const ProgramsResult& result, std::string_view program) {
+std::optional<PairedRatio> times_as_fast(const ProgramsResult& result, std::string_view program) {
     assert(!result.programs.empty());
     const std::vector<double>& ours = result.programs.front().seconds;
     for (const ProgramTimes& p : result.programs)
         if (p.name == program && !p.seconds.empty() && !ours.empty())
-            return spread_of(p.seconds).median / spread_of(ours).median;
+            return paired_ratio(p.seconds, ours);
     return {};
 }
 
@@ -195,9 +195,10 @@ std::string programs_table(const ProgramsResult& r) {
             continue;
         }
         const Spread s = spread_of(p.seconds);
-        rows.push_back({p.name, p.reads, human_bytes(p.bytes_read), fmt::format("{:.2f}", s.median),
-                        fmt::format("{:.2f}", s.min), fmt::format("{:.2f}", s.max),
-                        fmt::format("{:.1f} x", times_as_fast(r, p.name).value_or(0))});
+        rows.push_back(
+            {p.name, p.reads, human_bytes(p.bytes_read), fmt::format("{:.2f}", s.median),
+             fmt::format("{:.2f}", s.min), fmt::format("{:.2f}", s.max),
+             fmt::format("{:.1f} x", times_as_fast(r, p.name).value_or(PairedRatio{}).median)});
     }
     return fmt::format("{}: {} triangles, from file to PNG of {} x {}, one light with shadows, {} "
                        "threads, {} runs in turn\n\n{}",
@@ -209,13 +210,13 @@ std::string programs_json(const ProgramsResult& r) {
     using nlohmann::ordered_json;
     ordered_json programs = ordered_json::array();
     for (const ProgramTimes& p : r.programs) {
-        const std::optional<double> ratio = times_as_fast(r, p.name);
-        programs.push_back(
-            {{"name", p.name},
-             {"reads", p.reads},
-             {"bytes_read", p.bytes_read},
-             {"wall_seconds", p.seconds},
-             {"overcast_times_as_fast", ratio ? ordered_json(*ratio) : ordered_json(nullptr)}});
+        const std::optional<PairedRatio> ratio = times_as_fast(r, p.name);
+        programs.push_back({{"name", p.name},
+                            {"reads", p.reads},
+                            {"bytes_read", p.bytes_read},
+                            {"wall_seconds", p.seconds},
+                            {"overcast_times_as_fast",
+                             ratio ? ordered_json(ratio->median) : ordered_json(nullptr)}});
     }
     const ordered_json document = {{"mesh", r.mesh},
                                    {"triangles", r.triangles},

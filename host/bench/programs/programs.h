@@ -4,6 +4,7 @@
 #pragma once
 
 #include "core/scene.h"
+#include "host/bench/paired_ratio.h"
 #include "host/bench/workload.h"
 
 #include <cstdint>
@@ -54,9 +55,9 @@ Result<ProgramsResult> race_programs(const std::string& mesh, const Soup& soup, 
                                      uint32_t runs, const std::filesystem::path& folder,
                                      const StopRequest& stop);
 
-/// Returns median seconds of a program divided by those of overcast, or nothing where either did
-/// not run. result.programs: overcast first (not empty: asserted).
-std::optional<double> times_as_fast(const ProgramsResult& result, std::string_view program);
+/// Returns the seconds of a program divided by those of overcast, run by run, or nothing where
+/// either did not run. result.programs: overcast first (not empty: asserted).
+std::optional<PairedRatio> times_as_fast(const ProgramsResult& result, std::string_view program);
 
 std::string programs_table(const ProgramsResult& result);
 std::string programs_json(const ProgramsResult& result);
