@@ -22,6 +22,10 @@ using RankBytes = std::vector<std::byte>;
 
 /// Asked some twenty times a second while something is waited for; false: no longer.
 using GoesOn = std::function<bool()>;
+/// The GoesOn of calls that only an answer or a lost rank ends.
+inline bool goes_on_always() {
+    return true;
+}
 
 class Ranks {
 public:

@@ -199,7 +199,7 @@ Result<Done> spread_film(const Ranks& ranks, Film& film) {
     for (uint32_t pixel = 0; ranks.is_first() && pixel < film.width() * film.height(); ++pixel)
         if (film.done(pixel))
             done.add(pixel, film);
-    const Result<RankBytes> spread = ranks.spread(done.bytes(), [] { return true; });
+    const Result<RankBytes> spread = ranks.spread(done.bytes(), goes_on_always);
     if (!spread)
         return spread.error();
     Pixels::of(*spread).restore(film);

@@ -2,7 +2,7 @@
 // The table of overcast_ranks.h.
 #include "plugin/overcast_ranks.h"
 
-#include "plugin/ranks/mpi_post.h"
+#include "plugin/ranks/mpi_transport.h"
 #include "plugin/ranks/notes.h"
 
 #include <cstdlib>
@@ -14,7 +14,7 @@ namespace ovc {
 namespace {
 
 struct HostRanks {
-    std::unique_ptr<Post> post;
+    std::unique_ptr<Transport> transport;
     std::unique_ptr<Notes> notes;
     std::vector<std::string> names;
     std::string error;
@@ -79,17 +79,17 @@ ovc_result spread(const void* bytes, size_t size, ovc_take_function take, ovc_wa
 
 bool open(double timeout_seconds) {
     HostRanks& all = host_ranks();
-    Result<std::unique_ptr<Post>> post = make_mpi_post({0, timeout_seconds});
-    if (!post)
+    Result<std::unique_ptr<Transport>> transport = make_mpi_transport({0, timeout_seconds});
+    if (!transport)
         return false;
-    all.post = std::move(*post);
-    all.notes = std::make_unique<Notes>(*all.post);
-    for (uint32_t rank = 0; rank < all.post->ranks(); ++rank)
-        all.names.push_back(all.post->name_of(rank));
-    std::atexit([] { host_ranks().post.reset(); }); // before MPI is ended
+    all.transport = std::move(*transport);
+    all.notes = std::make_unique<Notes>(*all.transport);
+    for (uint32_t rank = 0; rank < all.transport->ranks(); ++rank)
+        all.names.push_back(all.transport->name_of(rank));
+    std::atexit([] { host_ranks().transport.reset(); }); // before MPI is ended
     all.table = {sizeof(ovc_ranks),
-                 all.post->rank(),
-                 all.post->ranks(),
+                 all.transport->rank(),
+                 all.transport->ranks(),
                  [](uint32_t rank) { return host_ranks().names.at(rank).c_str(); },
                  [] { return host_ranks().error.c_str(); },
                  gather,

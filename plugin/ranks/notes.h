@@ -2,7 +2,7 @@
 // Notes: bytes that all ranks exchange at the same point of their program.
 #pragma once
 
-#include "plugin/ranks/post.h"
+#include "plugin/ranks/transport.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -14,8 +14,8 @@ namespace ovc {
 
 class Notes {
 public:
-    /// The post's notes come here alone.
-    explicit Notes(Post& post) : post_(post) {}
+    /// The transport's notes come here alone.
+    explicit Notes(Transport& transport) : transport_(transport) {}
 
     /// Sends the bytes of this rank to rank 0, which returns those of all ranks, in their order.
     /// All ranks call it. The others return at once, with nothing. goes_on(): asked some twenty
@@ -30,12 +30,12 @@ public:
 private:
     Result<std::vector<std::byte>> next_from(uint32_t rank, const std::function<bool()>& goes_on);
 
-    Post& post_;
-    std::vector<Inbox::Letter> early_; // that nobody has waited for yet
+    Transport& transport_;
+    std::vector<Received> early_; // that nobody has waited for yet
 };
 
 /// Returns the first error among those of all ranks, which all call this; its sentence names the
 /// rank where that is another. It is `mine` where no rank has one.
-Result<Done> first_error(Notes& notes, Post& post, const Result<Done>& mine);
+Result<Done> first_error(Notes& notes, Transport& transport, const Result<Done>& mine);
 
 } // namespace ovc

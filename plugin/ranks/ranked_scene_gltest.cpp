@@ -2,7 +2,7 @@
 // Ranks that share a scene out answer bit for bit what one process answers, whoever asks.
 #include "plugin/ranks/ranked_scene.h"
 
-#include "plugin/ranks/memory_post.h"
+#include "plugin/ranks/memory_transport.h"
 #include "plugin/ranks/sharing.h"
 #include "plugin/two_level/test_two_level.h"
 
@@ -13,21 +13,21 @@
 namespace ovc {
 namespace {
 
-using test::MemoryPost;
+using test::MemoryTransport;
 using test::ok;
 
 /// Several ranks of one scene, in threads.
 class RankedGl : public TwoLevelGl {
 protected:
     struct Rank {
-        MemoryPost* post = nullptr;
+        MemoryTransport* transport = nullptr;
         std::unique_ptr<RankedScene> scene;
         uint64_t pages = 0, bytes = 0;
     };
 
     std::vector<Rank> make(const Soup& soup, uint32_t count, const TwoLevelOptions& options,
                            uint64_t everywhere_bytes = 0) {
-        auto posts = MemoryPost::make(count);
+        auto transports = MemoryTransport::make(count);
         std::vector<Rank> ranks(count);
         for (uint32_t rank = 0; rank < count; ++rank) {
             SharingOptions share{.rank = rank};
@@ -39,12 +39,12 @@ protected:
             std::unique_ptr<TwoLevel> local = build(soup, here);
             if (!local)
                 return {};
-            ranks[rank].post = posts[rank].get();
+            ranks[rank].transport = transports[rank].get();
             ranks[rank].pages = local->scene().pages.size();
             ranks[rank].bytes = local->scene().level2_bytes();
             ranks[rank].scene = std::make_unique<RankedScene>(
-                soup, RankedParts{std::move(posts[rank]), std::move(local), sharing.take_finder(),
-                                  options.certify});
+                soup, RankedParts{std::move(transports[rank]), std::move(local),
+                                  sharing.take_finder(), options.certify});
         }
         return ranks;
     }
@@ -203,7 +203,7 @@ TEST_F(RankedGl, SaysWhoIsLost) {
     const Soup soup = test::closed_grid(24);
     auto ranks = make(soup, 3, {.leaf_triangles = 40});
     ASSERT_EQ(ranks.size(), 3u);
-    ranks[0].post->lose(2);
+    ranks[0].transport->lose(2);
     const auto rays = test::rays_from_outside(52, 100);
     std::vector<Hit> hits(rays.size());
     const Result<Done> done = ranks[0].scene->intersect(rays, {}, hits);

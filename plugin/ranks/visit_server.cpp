@@ -10,10 +10,10 @@
 
 namespace ovc {
 
-/// A batch has so many rays at most, unless one parcel has more.
+/// A batch has so many rays at most, unless one message has more.
 static constexpr size_t kMaxBatch = size_t(1) << 17;
 
-/// The visits of several parcels as a call takes them.
+/// The visits of several messages as a call takes them.
 struct VisitServer::Batch {
     std::vector<Ray> rays;
     std::vector<TriangleId> skip;
@@ -22,15 +22,15 @@ struct VisitServer::Batch {
     std::vector<Hit> hits;
     std::vector<uint8_t> occluded;
 
-    /// Takes the visits of these letters. The arrays keep their memory from batch to batch.
-    void fill(Letters letters) {
+    /// Takes the visits of these messages. The arrays keep their memory from batch to batch.
+    void fill(Messages messages) {
         rays.clear();
         skip.clear();
         after.clear();
         masks.clear();
         bool has_after = false, has_masks = false;
-        for (const Inbox::Letter* letter : letters)
-            for (const RankVisit& visit : letter->parcel.items<RankVisit>()) {
+        for (const Received* received : messages)
+            for (const RankVisit& visit : received->message.items<RankVisit>()) {
                 rays.push_back(visit.ray);
                 skip.push_back(visit.skip);
                 after.push_back({visit.after_t, 0, 0, visit.after});
@@ -51,14 +51,14 @@ struct VisitServer::Batch {
     }
 };
 
-VisitServer::VisitServer(Structure& local, Post& post, LoopThreads* threads)
-    : local_(local), post_(post), threads_(threads), batch_(std::make_unique<Batch>()) {
+VisitServer::VisitServer(Structure& local, Transport& transport, LoopThreads* threads)
+    : local_(local), transport_(transport), threads_(threads), batch_(std::make_unique<Batch>()) {
     thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
 }
 
 VisitServer::~VisitServer() {
     thread_.request_stop();
-    post_.visits.wake();
+    transport_.visits.wake();
 }
 
 void VisitServer::run(const std::stop_token& stop) {
@@ -66,81 +66,81 @@ void VisitServer::run(const std::stop_token& stop) {
     if (threads_)
         scope.emplace(*threads_);
     while (!stop.stop_requested()) {
-        std::vector<Inbox::Letter> letters = post_.visits.take(std::chrono::milliseconds(50));
+        std::vector<Received> all = transport_.visits.take(std::chrono::milliseconds(50));
         // Others have waited for their rays to come here already.
         std::ranges::stable_partition(
-            letters, [&](const Inbox::Letter& letter) { return letter.from != post_.rank(); });
-        is_idle_ = letters.empty();
+            all, [&](const Received& received) { return received.from != transport_.rank(); });
+        is_idle_ = all.empty();
         // Rays that ask for any hit have no children, so nothing waits for the others' sake.
-        for (const ParcelKind kind : {ParcelKind::NearestVisits, ParcelKind::AnyVisits})
-            serve(letters, kind);
+        for (const MessageKind kind : {MessageKind::NearestVisits, MessageKind::AnyVisits})
+            serve(all, kind);
         is_idle_ = true;
     }
 }
 
-void VisitServer::serve(std::span<const Inbox::Letter> letters, ParcelKind kind) {
-    std::vector<const Inbox::Letter*> some;
+void VisitServer::serve(std::span<const Received> all, MessageKind kind) {
+    std::vector<const Received*> some;
     const auto trace = [&] {
         if (some.empty())
             return;
         const std::lock_guard lock(local_mutex_);
         try {
             batch_->fill(some);
-            (kind == ParcelKind::AnyVisits) ? trace_any(some) : trace_nearest(some);
+            (kind == MessageKind::AnyVisits) ? trace_any(some) : trace_nearest(some);
         } catch (const std::exception& error) {
             fail(some, Error{error.what()});
         }
         some.clear();
     };
     size_t rays = 0;
-    for (const Inbox::Letter& letter : letters) {
-        if (letter.parcel.kind() != kind)
+    for (const Received& received : all) {
+        if (received.message.kind() != kind)
             continue;
-        const size_t more = letter.parcel.items<RankVisit>().size();
+        const size_t more = received.message.items<RankVisit>().size();
         if (rays + more > kMaxBatch)
             trace(), rays = 0;
-        some.push_back(&letter);
+        some.push_back(&received);
         rays += more;
-        served_ += letter.from == post_.rank() ? 0 : more;
+        served_ += received.from == transport_.rank() ? 0 : more;
     }
     trace();
 }
 
-void VisitServer::trace_nearest(Letters letters) {
+void VisitServer::trace_nearest(Messages messages) {
     std::vector<Hit>& hits = batch_->hits;
     hits.resize(batch_->rays.size());
     if (const Result<Done> done = local_.intersect(batch_->rays, batch_->without(), hits); !done)
-        return fail(letters, done.error());
+        return fail(messages, done.error());
     size_t next = 0;
-    for (const Inbox::Letter* letter : letters) {
+    for (const Received* received : messages) {
         std::vector<HitThere> answers;
-        for (const RankVisit& visit : letter->parcel.items<RankVisit>())
+        for (const RankVisit& visit : received->message.items<RankVisit>())
             answers.push_back({hits[next++], visit.slot});
-        post_.send(letter->from, Parcel(ParcelKind::Hits, letter->parcel.call(),
-                                        std::span<const HitThere>(answers)));
+        transport_.send(received->from, Message(MessageKind::Hits, received->message.call(),
+                                                std::span<const HitThere>(answers)));
     }
 }
 
-void VisitServer::trace_any(Letters letters) {
+void VisitServer::trace_any(Messages messages) {
     std::vector<uint8_t>& occluded = batch_->occluded;
     occluded.resize(batch_->rays.size());
     if (const Result<Done> done = local_.occluded(batch_->rays, batch_->without(), occluded); !done)
-        return fail(letters, done.error());
+        return fail(messages, done.error());
     size_t next = 0;
-    for (const Inbox::Letter* letter : letters) {
+    for (const Received* received : messages) {
         std::vector<OcclusionThere> answers;
-        for (const RankVisit& visit : letter->parcel.items<RankVisit>())
+        for (const RankVisit& visit : received->message.items<RankVisit>())
             answers.push_back({visit.slot, occluded[next++]});
-        post_.send(letter->from, Parcel(ParcelKind::Occlusions, letter->parcel.call(),
-                                        std::span<const OcclusionThere>(answers)));
+        transport_.send(received->from, Message(MessageKind::Occlusions, received->message.call(),
+                                                std::span<const OcclusionThere>(answers)));
     }
 }
 
-void VisitServer::fail(Letters letters, const Error& error) {
+void VisitServer::fail(Messages messages, const Error& error) {
     const std::string told = text_of_error(error);
-    for (const Inbox::Letter* letter : letters)
-        post_.send(letter->from,
-                   Parcel(ParcelKind::Failure, letter->parcel.call(), std::span<const char>(told)));
+    for (const Received* received : messages)
+        transport_.send(received->from, Message(MessageKind::Failure, received->message.call(),
+                                                std::span<const char>(told)));
 }
 
 } // namespace ovc

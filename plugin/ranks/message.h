@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Parcels: what ranks send each other. They go as bytes between processes of one program on
+// Messages: what ranks send each other. They go as bytes between processes of one program on
 // machines of one kind.
 #pragma once
 
@@ -43,7 +43,7 @@ struct OcclusionThere {
     uint32_t occluded;
 };
 
-enum class ParcelKind : uint32_t {
+enum class MessageKind : uint32_t {
     NearestVisits, // RankVisit
     AnyVisits,     // RankVisit
     Hits,          // HitThere
@@ -53,13 +53,13 @@ enum class ParcelKind : uint32_t {
 };
 
 /// Items of one kind, of one call.
-class Parcel {
+class Message {
 public:
-    Parcel() = default;
+    Message() = default;
     /// call: a number that answers carry back, so that those to a call that was given up are told
     /// from those to the next.
     template <class T>
-    Parcel(ParcelKind kind, uint32_t call, std::span<const T> items)
+    Message(MessageKind kind, uint32_t call, std::span<const T> items)
         : bytes_(sizeof(Head) + items.size_bytes()) {
         static_assert(std::is_trivially_copyable_v<T>);
         const Head head{kind, call};
@@ -67,15 +67,15 @@ public:
         if (!items.empty())
             std::memcpy(bytes_.data() + sizeof(Head), items.data(), items.size_bytes());
     }
-    /// Takes what the bytes() of another parcel were.
-    explicit Parcel(std::vector<std::byte> bytes) : bytes_(std::move(bytes)) {
+    /// Takes what the bytes() of another message were.
+    explicit Message(std::vector<std::byte> bytes) : bytes_(std::move(bytes)) {
         assert(bytes_.size() >= sizeof(Head));
     }
 
-    ParcelKind kind() const { return head().kind; }
+    MessageKind kind() const { return head().kind; }
     uint32_t call() const { return head().call; }
     bool has_visits() const {
-        return kind() == ParcelKind::NearestVisits || kind() == ParcelKind::AnyVisits;
+        return kind() == MessageKind::NearestVisits || kind() == MessageKind::AnyVisits;
     }
     template <class T>
     std::span<const T> items() const {
@@ -86,7 +86,7 @@ public:
 
 private:
     struct Head {
-        ParcelKind kind;
+        MessageKind kind;
         uint32_t call;
     };
     static_assert(sizeof(Head) == 8); // items stay aligned
@@ -100,7 +100,7 @@ private:
     std::vector<std::byte> bytes_;
 };
 
-/// Returns the error as text for a parcel, which is not empty: its kind and its sentence.
+/// Returns the error as text for a message, which is not empty: its kind and its sentence.
 inline std::string text_of_error(const Error& error) {
     return char('0' + int(error.kind)) + error.message;
 }

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Journey: a call's rays on their way from rank to rank. A ray visits the ranks whose pages it
+// RoutedCall: a call's rays on their way from rank to rank. A ray visits the ranks whose pages it
 // comes by, the nearest first, and after each visit its answer comes home: here. It goes on as long
 // as another rank may have a nearer hit.
 #pragma once
 
 #include "core/exclusions.h"
 #include "core/ray_span.h"
-#include "plugin/ranks/post.h"
 #include "plugin/ranks/stops.h"
+#include "plugin/ranks/transport.h"
 #include "plugin/structure/call_watch.h"
 
 #include <cstdint>
@@ -18,17 +18,17 @@
 
 namespace ovc {
 
-/// What journeys of a scene have in common.
-struct Itinerary {
+/// What routed calls of a scene have in common.
+struct Routing {
     const Soup& soup; // whose corners decide between hits of equal t
     bool certified;
     const StopFinder& finder;
-    Post& post;
+    Transport& transport;
     std::function<bool()> is_idle; // whether this rank traces nothing just now
 };
 
 /// The rays of a call, at most kMaxRays, and where their answers go: one of the last two is empty.
-struct JourneyRays {
+struct RoutedRays {
     static constexpr size_t kMaxRays = size_t(1) << 20;
 
     RaySpan rays;
@@ -37,10 +37,10 @@ struct JourneyRays {
     std::span<uint8_t> occluded;
 };
 
-class Journey {
+class RoutedCall {
 public:
-    /// call: a number that no other journey of this rank had of late.
-    Journey(const Itinerary& ranks, const JourneyRays& rays, uint32_t call, CallWatch& watch);
+    /// call: a number that no other of this rank had of late.
+    RoutedCall(const Routing& ranks, const RoutedRays& rays, uint32_t call, CallWatch& watch);
 
     /// Answers all rays. Error: the call is cancelled, a rank is lost, or one cannot trace.
     Result<Done> run();
@@ -62,13 +62,13 @@ private:
     void send_off();
     void send_some(uint32_t to, Way& way);
     RankVisit visit_of(uint32_t ray) const;
-    Result<Done> take(const Inbox::Letter& letter);
+    Result<Done> take(const Received& received);
     void take_hit(const HitThere& there);
     bool is_nearer(uint32_t ray, const Hit& hit) const;
     Result<Done> wait();
 
-    const Itinerary& ranks_;
-    const JourneyRays& rays_;
+    const Routing& ranks_;
+    const RoutedRays& rays_;
     const uint32_t call_;
     CallWatch& watch_;
     std::vector<Stop> stops_;    // of all rays

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// One thread a post does all that MPI is needed for: it sends, receives, and listens for signs of
-// life. Ranks watch each other in a ring, so that a thousand of them send no more than two.
-#include "plugin/ranks/mpi_post.h"
+// One thread a transport does all that MPI is needed for: it sends, receives, and listens for
+// heartbeats. Ranks watch each other in a ring, so that a thousand of them send no more than two.
+#include "plugin/ranks/mpi_transport.h"
 
 #include "core/text/format_text.h"
 
@@ -20,7 +20,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr double kDefaultTimeout = 60;
-constexpr int kParcelTag = 1, kLifeTag = 2, kLostTag = 3;
+constexpr int kMessageTag = 1, kHeartbeatTag = 2, kLostTag = 3;
 
 /// Starts MPI where the host has not, and then ends it with the process.
 Result<Done> start_mpi() {
@@ -49,10 +49,10 @@ Result<Done> start_mpi() {
     return Done{};
 }
 
-class MpiPost final : public Post {
+class MpiTransport final : public Transport {
 public:
-    /// comm: of this post alone.
-    MpiPost(MPI_Comm comm, double timeout_seconds)
+    /// comm: of this transport alone.
+    MpiTransport(MPI_Comm comm, double timeout_seconds)
         : comm_(comm),
           timeout_(std::chrono::duration_cast<Clock::duration>(
               std::chrono::duration<double>(timeout_seconds))) {
@@ -64,7 +64,7 @@ public:
         gather_hosts();
         thread_ = std::thread([this] { run(); });
     }
-    ~MpiPost() override {
+    ~MpiTransport() override {
         close();
         // With a rank gone, a call that all ranks make would not return.
         if (!lost())
@@ -91,13 +91,13 @@ public:
         wake();
         thread_.join();
     }
-    PostCounts counts() const override { return {sent_, received_}; }
+    TransportCounts counts() const override { return {sent_, received_}; }
 
 protected:
-    void send_away(uint32_t to, Parcel parcel) override {
+    void send_away(uint32_t to, Message message) override {
         {
             const std::lock_guard lock(mutex_);
-            outgoing_.push_back({to, std::move(parcel)});
+            outgoing_.push_back({to, std::move(message)});
         }
         wake();
     }
@@ -105,7 +105,7 @@ protected:
 private:
     struct Sending {
         MPI_Request request = MPI_REQUEST_NULL;
-        Parcel parcel;     // or
+        Message message;   // or
         uint32_t word = 0; // about a rank
     };
 
@@ -126,7 +126,7 @@ private:
         changed_.notify_one();
     }
 
-    /// Works until all ranks have closed their posts, or one is lost.
+    /// Works until all ranks have closed their transports, or one is lost.
     void run() {
         heard_ = Clock::now();
         MPI_Request all_closed = MPI_REQUEST_NULL;
@@ -134,9 +134,9 @@ private:
         std::chrono::microseconds nap(20);
         while (true) {
             const bool was_busy = send_what_waits() | receive_all() | forget_sent();
-            give_sign_of_life();
+            send_heartbeat();
             watch_neighbour();
-            // No parcel of this rank is under way any more, for all answers have come home.
+            // No message of this rank is under way any more, for all answers have come home.
             if (closing_ && !is_closing && sending_.empty()) {
                 MPI_Ibarrier(comm_, &all_closed);
                 is_closing = true;
@@ -157,20 +157,20 @@ private:
     }
 
     bool send_what_waits() {
-        std::vector<std::pair<uint32_t, Parcel>> letters;
+        std::vector<std::pair<uint32_t, Message>> messages;
         {
             const std::lock_guard lock(mutex_);
-            letters.swap(outgoing_);
+            messages.swap(outgoing_);
         }
-        for (auto& [to, parcel] : letters) {
+        for (auto& [to, message] : messages) {
             Sending& sending = sending_.emplace_back();
-            sending.parcel = std::move(parcel);
-            const auto bytes = sending.parcel.bytes();
-            MPI_Isend(bytes.data(), int(bytes.size()), MPI_BYTE, int(to), kParcelTag, comm_,
+            sending.message = std::move(message);
+            const auto bytes = sending.message.bytes();
+            MPI_Isend(bytes.data(), int(bytes.size()), MPI_BYTE, int(to), kMessageTag, comm_,
                       &sending.request);
             sent_ += bytes.size();
         }
-        return !letters.empty();
+        return !messages.empty();
     }
 
     bool forget_sent() {
@@ -198,8 +198,8 @@ private:
             const auto from = uint32_t(status.MPI_SOURCE);
             if (from == before())
                 heard_ = Clock::now();
-            if (status.MPI_TAG == kParcelTag) {
-                deliver(from, Parcel(std::move(bytes)));
+            if (status.MPI_TAG == kMessageTag) {
+                deliver(from, Message(std::move(bytes)));
                 any = true;
             } else if (status.MPI_TAG == kLostTag) {
                 lose(*reinterpret_cast<const uint32_t*>(bytes.data()));
@@ -210,12 +210,12 @@ private:
     uint32_t before() const { return (rank_ + ranks_ - 1) % ranks_; }
     uint32_t behind() const { return (rank_ + 1) % ranks_; }
 
-    void give_sign_of_life() {
+    void send_heartbeat() {
         const auto now = Clock::now();
-        if (ranks_ == 1 || now < next_sign_)
+        if (ranks_ == 1 || now < next_heartbeat_)
             return;
-        next_sign_ = now + std::min<Clock::duration>(timeout_ / 4, std::chrono::seconds(1));
-        send_word(behind(), kLifeTag, rank_);
+        next_heartbeat_ = now + std::min<Clock::duration>(timeout_ / 4, std::chrono::seconds(1));
+        send_word(behind(), kHeartbeatTag, rank_);
     }
 
     void watch_neighbour() {
@@ -258,18 +258,18 @@ private:
     std::atomic<uint64_t> sent_{0}, received_{0};
     mutable std::mutex mutex_; // guards the next four
     std::condition_variable changed_;
-    std::vector<std::pair<uint32_t, Parcel>> outgoing_;
+    std::vector<std::pair<uint32_t, Message>> outgoing_;
     uint32_t lost_ = kNone;
     bool woken_ = false;
     // of the thread
     std::list<Sending> sending_;
-    Clock::time_point heard_, looked_ = Clock::now(), next_sign_{};
+    Clock::time_point heard_, looked_ = Clock::now(), next_heartbeat_{};
     std::thread thread_;
 };
 
 } // namespace
 
-Result<std::unique_ptr<Post>> make_mpi_post(const MpiPostOptions& options) {
+Result<std::unique_ptr<Transport>> make_mpi_transport(const MpiTransportOptions& options) {
     if (const Result<Done> started = start_mpi(); !started)
         return started.error();
     const MPI_Comm given =
@@ -293,7 +293,7 @@ Result<std::unique_ptr<Post>> make_mpi_post(const MpiPostOptions& options) {
                      ErrorKind::InvalidArgument};
     MPI_Comm_set_errhandler(own, MPI_ERRORS_RETURN);
     const double timeout = options.timeout_seconds > 0 ? options.timeout_seconds : kDefaultTimeout;
-    return std::unique_ptr<Post>(std::make_unique<MpiPost>(own, timeout));
+    return std::unique_ptr<Transport>(std::make_unique<MpiTransport>(own, timeout));
 }
 
 void abort_all_ranks(int code) {
