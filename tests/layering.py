@@ -40,7 +40,7 @@ PARTS = {
                            "plugin/leaf_store"},
     "plugin/two_level": {"plugin", "plugin/structure", "plugin/build", "plugin/plan",
                          "plugin/out_of_core", "plugin/leaf_store", "plugin/fallback"},
-    "plugin/ranks": {"plugin", "plugin/structure", "plugin/build", "plugin/plan",
+    "plugin/ranks": {"plugin", "plugin/abi", "plugin/structure", "plugin/build", "plugin/plan",
                      "plugin/two_level"},
 }
 

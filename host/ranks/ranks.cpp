@@ -116,6 +116,14 @@ Result<RankBytes> Ranks::spread(std::span<const std::byte> of_first, const GoesO
     return std::move(call.taken.front());
 }
 
+std::vector<uint32_t> Ranks::first_ranks(ovc_scene_t* scene, std::span<const Ray> rays) const {
+    std::vector<uint32_t> ranks(rays.size());
+    const auto* const abi_rays = reinterpret_cast<const ovc_ray*>(rays.data());
+    if (table_.first_ranks(scene, abi_rays, rays.size(), ranks.data()) != OVC_OK)
+        ranks.clear();
+    return ranks;
+}
+
 void Ranks::end_all(int code) const {
     std::fflush(nullptr);
     table_.abort(code);

@@ -215,7 +215,11 @@ private:
             progress.update(report);
             return !interrupt_.interrupted();
         };
-        return checked(render_picture(scene_, shot.camera, backend_, options_, observe, film));
+        RenderOptions options = options_;
+        options.keep = [&](const Film& so_far) {
+            return save_film(so_far, checksum_of_picture(shot), film_of(shot));
+        };
+        return checked(render_picture(scene_, shot.camera, backend_, options, observe, film));
     }
 
     Result<Done> save_finished(const View& shot, const Film& film, const FrameStats& frame) {

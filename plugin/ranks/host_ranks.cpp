@@ -2,6 +2,8 @@
 // The table of overcast_ranks.h.
 #include "plugin/overcast_ranks.h"
 
+#include "plugin/abi/ray_call.h"
+#include "plugin/abi/scene_call.h"
 #include "plugin/ranks/mpi_transport.h"
 #include "plugin/ranks/notes.h"
 
@@ -77,6 +79,14 @@ ovc_result spread(const void* bytes, size_t size, ovc_take_function take, ovc_wa
     });
 }
 
+ovc_result first_ranks(ovc_scene scene, const ovc_ray* rays, size_t ray_count, uint32_t* ranks) {
+    return on_scene(scene, "first_ranks", [&] {
+        check_buffers("first_ranks", rays, ranks, ray_count);
+        const std::span<const Ray> all(reinterpret_cast<const Ray*>(rays), ray_count);
+        committed(scene, "first_ranks").first_ranks(all, {ranks, ray_count});
+    });
+}
+
 bool open(double timeout_seconds) {
     HostRanks& all = host_ranks();
     Result<std::unique_ptr<Transport>> transport = make_mpi_transport({0, timeout_seconds});
@@ -94,7 +104,8 @@ bool open(double timeout_seconds) {
                  [] { return host_ranks().error.c_str(); },
                  gather,
                  spread,
-                 [](int code) { abort_all_ranks(code); }};
+                 [](int code) { abort_all_ranks(code); },
+                 first_ranks};
     return true;
 }
 

@@ -6,6 +6,7 @@
 #include "core/exclusions.h"
 #include "core/ray.h"
 #include "core/result.h"
+#include "plugin/ranks/message_bytes.h"
 
 #include <cassert>
 #include <cstddef>
@@ -15,89 +16,68 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
-#include <vector>
 
 namespace ovc {
 
-/// A ray on its way to a rank that has pages for it.
-struct RankVisit {
-    Ray ray; // t_max: that of the nearest hit so far, or a little more
-    TriangleId skip;
-    TriangleId after; // with after_t, as in Exclusion::after
-    double after_t;
-    uint32_t mask;
-    uint32_t slot; // the number of the ray in the call at home
-};
-static_assert(sizeof(RankVisit) == 96);
-
-/// The nearest hit that a visited rank has found.
-struct HitThere {
-    Hit hit;
-    uint32_t slot;
-    uint32_t unused = 0;
-};
-
-/// Whether a visited rank has found any hit.
-struct OcclusionThere {
-    uint32_t slot;
-    uint32_t occluded;
-};
-
 enum class MessageKind : uint32_t {
-    NearestVisits, // RankVisit
-    AnyVisits,     // RankVisit
-    Hits,          // HitThere
-    Occlusions,    // OcclusionThere
+    NearestVisits, // VisitArrays
+    AnyVisits,     // VisitArrays
+    Hits,          // the nearest Hit of each visit, in their order
+    Occlusions,    // a byte for each visit, in their order: 1 where it has any hit
     Failure,       // a character for the kind of an error, and its sentence
-    Note,          // bytes between hosts (host_ranks.h)
+    Note,          // bytes between hosts (notes.h)
 };
 
-/// Items of one kind, of one call.
+/// Stands before the items of a message.
+struct MessageHead {
+    MessageKind kind = MessageKind::Note;
+    uint32_t call = 0;   // answers carry these two back, so that those to a call that was given up
+    uint32_t number = 0; // are told from those to the next
+    uint32_t count = 0;  // of items
+    uint32_t arrays = 0; // of VisitArrays, which there are
+    uint32_t unused = 0; // items stay aligned
+};
+static_assert(sizeof(MessageHead) == 24);
+
+/// A head and items of one kind. Only moved, never copied.
 class Message {
 public:
     Message() = default;
-    /// call: a number that answers carry back, so that those to a call that was given up are told
-    /// from those to the next.
-    template <class T>
-    Message(MessageKind kind, uint32_t call, std::span<const T> items)
-        : bytes_(sizeof(Head) + items.size_bytes()) {
-        static_assert(std::is_trivially_copyable_v<T>);
-        const Head head{kind, call};
+    /// Makes a message whose items, so many bytes, are not set yet.
+    Message(const MessageHead& head, size_t item_bytes)
+        : Message(MessageBytes(sizeof(head) + item_bytes)) {
         std::memcpy(bytes_.data(), &head, sizeof(head));
+    }
+    template <class T>
+    Message(const MessageHead& head, std::span<const T> items) : Message(head, items.size_bytes()) {
+        static_assert(std::is_trivially_copyable_v<T>);
         if (!items.empty())
-            std::memcpy(bytes_.data() + sizeof(Head), items.data(), items.size_bytes());
+            std::memcpy(item_bytes(), items.data(), items.size_bytes());
     }
     /// Takes what the bytes() of another message were.
-    explicit Message(std::vector<std::byte> bytes) : bytes_(std::move(bytes)) {
-        assert(bytes_.size() >= sizeof(Head));
+    explicit Message(MessageBytes bytes) : bytes_(std::move(bytes)) {
+        assert(bytes_.size() >= sizeof(MessageHead));
     }
 
-    MessageKind kind() const { return head().kind; }
-    uint32_t call() const { return head().call; }
-    bool has_visits() const {
-        return kind() == MessageKind::NearestVisits || kind() == MessageKind::AnyVisits;
-    }
-    template <class T>
-    std::span<const T> items() const {
-        const auto bytes = std::span(bytes_).subspan(sizeof(Head));
-        return {reinterpret_cast<const T*>(bytes.data()), bytes.size() / sizeof(T)};
-    }
-    std::span<const std::byte> bytes() const { return bytes_; }
-
-private:
-    struct Head {
-        MessageKind kind;
-        uint32_t call;
-    };
-    static_assert(sizeof(Head) == 8); // items stay aligned
-
-    Head head() const {
-        Head head;
+    MessageHead head() const {
+        MessageHead head;
         std::memcpy(&head, bytes_.data(), sizeof(head));
         return head;
     }
+    MessageKind kind() const { return head().kind; }
+    bool has_visits() const {
+        return kind() == MessageKind::NearestVisits || kind() == MessageKind::AnyVisits;
+    }
+    std::byte* item_bytes() const { return bytes_.data() + sizeof(MessageHead); }
+    template <class T>
+    std::span<T> items() const {
+        return {reinterpret_cast<T*>(item_bytes()),
+                (bytes_.size() - sizeof(MessageHead)) / sizeof(T)};
+    }
+    std::span<const std::byte> bytes() const { return {bytes_.data(), bytes_.size()}; }
 
-    std::vector<std::byte> bytes_;
+private:
+    MessageBytes bytes_;
 };
 
 /// Returns the error as text for a message, which is not empty: its kind and its sentence.

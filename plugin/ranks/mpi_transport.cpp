@@ -131,7 +131,9 @@ private:
         heard_ = Clock::now();
         MPI_Request all_closed = MPI_REQUEST_NULL;
         bool is_closing = false;
-        std::chrono::microseconds nap(20);
+        constexpr std::chrono::microseconds kMinNap(100); // a batch takes some thousands
+        std::chrono::microseconds nap = kMinNap;
+        Clock::time_point busy = heard_;
         while (true) {
             const bool was_busy = send_what_waits() | receive_all() | forget_sent();
             send_heartbeat();
@@ -148,8 +150,12 @@ private:
                 if (over || lost_is_told())
                     return;
             }
-            nap = was_busy ? std::chrono::microseconds(20)
-                           : std::min(nap * 2, std::chrono::microseconds(500));
+            // Where nothing has come for a while nobody waits: heartbeats are not in a hurry.
+            const auto now = Clock::now();
+            busy = was_busy ? now : busy;
+            const std::chrono::microseconds max_nap(
+                now - busy < std::chrono::milliseconds(100) ? 800 : 5000);
+            nap = was_busy ? kMinNap : std::min(nap * 2, max_nap);
             std::unique_lock lock(mutex_);
             changed_.wait_for(lock, nap, [&] { return woken_; });
             woken_ = false;
@@ -192,9 +198,9 @@ private:
                 return any;
             int size = 0;
             MPI_Get_count(&status, MPI_BYTE, &size);
-            std::vector<std::byte> bytes{size_t(size)};
+            MessageBytes bytes{size_t(size)};
             MPI_Mrecv(bytes.data(), size, MPI_BYTE, &message, MPI_STATUS_IGNORE);
-            received_ += bytes.size();
+            received_ += size_t(size);
             const auto from = uint32_t(status.MPI_SOURCE);
             if (from == before())
                 heard_ = Clock::now();

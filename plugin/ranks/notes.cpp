@@ -10,19 +10,28 @@
 
 namespace ovc {
 
-static Message note_of(std::span<const std::byte> bytes) {
-    return {MessageKind::Note, 0, bytes};
+void Notes::send(uint32_t to, std::span<const std::byte> note) {
+    const auto parts = uint32_t(std::max<size_t>((note.size() + max_part_ - 1) / max_part_, 1));
+    for (uint32_t part = 0; part < parts; ++part) {
+        const size_t first = part * max_part_;
+        transport_.send(to, Message({.kind = MessageKind::Note, .number = part, .count = parts},
+                                    note.subspan(first, std::min(max_part_, note.size() - first))));
+    }
 }
 
 Result<std::vector<std::byte>> Notes::next_from(uint32_t rank,
                                                 const std::function<bool()>& goes_on) {
+    std::vector<std::byte> note;
     while (true) {
         const auto found = std::ranges::find(early_, rank, &Received::from);
         if (found != early_.end()) {
+            const MessageHead head = found->message.head();
             const auto bytes = found->message.items<std::byte>();
-            std::vector<std::byte> note(bytes.begin(), bytes.end());
+            note.insert(note.end(), bytes.begin(), bytes.end());
             early_.erase(found);
-            return note;
+            if (head.number + 1 == head.count)
+                return note;
+            continue;
         }
         if (const std::optional<Error> lost = transport_.lost())
             return *lost;
@@ -35,7 +44,7 @@ Result<std::vector<std::byte>> Notes::next_from(uint32_t rank,
 
 Result<std::vector<std::vector<std::byte>>> Notes::gather(std::span<const std::byte> mine,
                                                           const std::function<bool()>& goes_on) {
-    transport_.send(0, note_of(mine));
+    send(0, mine);
     std::vector<std::vector<std::byte>> all;
     for (uint32_t rank = 0; transport_.rank() == 0 && rank < transport_.ranks(); ++rank) {
         Result<std::vector<std::byte>> note = next_from(rank, goes_on);
@@ -51,7 +60,7 @@ Result<std::vector<std::byte>> Notes::spread(std::span<const std::byte> of_first
     if (transport_.rank() != 0)
         return next_from(0, goes_on);
     for (uint32_t rank = 1; rank < transport_.ranks(); ++rank)
-        transport_.send(rank, note_of(of_first));
+        send(rank, of_first);
     return std::vector<std::byte>(of_first.begin(), of_first.end());
 }
 

@@ -14,8 +14,10 @@ namespace ovc {
 
 class Notes {
 public:
-    /// The transport's notes come here alone.
-    explicit Notes(Transport& transport) : transport_(transport) {}
+    /// The transport's notes come here alone. max_part: bytes of a note in one message, which MPI
+    /// limits to 2 GiB; a longer note goes in several.
+    explicit Notes(Transport& transport, size_t max_part = size_t(1) << 28)
+        : transport_(transport), max_part_(max_part) {}
 
     /// Sends the bytes of this rank to rank 0, which returns those of all ranks, in their order.
     /// All ranks call it. The others return at once, with nothing. goes_on(): asked some twenty
@@ -28,9 +30,11 @@ public:
                                           const std::function<bool()>& goes_on);
 
 private:
+    void send(uint32_t to, std::span<const std::byte> note);
     Result<std::vector<std::byte>> next_from(uint32_t rank, const std::function<bool()>& goes_on);
 
     Transport& transport_;
+    const size_t max_part_;
     std::vector<Received> early_; // that nobody has waited for yet
 };
 

@@ -2,6 +2,7 @@
 // Cuts calls into routed calls, asks filters about what these bring home, and counts.
 #include "plugin/ranks/ranked_scene.h"
 
+#include "core/system/parallel.h"
 #include "core/system/stopwatch.h"
 
 #include <algorithm>
@@ -14,7 +15,8 @@ RankedScene::RankedScene(const Soup& soup, RankedParts parts)
     : parts_(std::move(parts)),
       server_(*parts_.local, *parts_.transport, parts_.threads),
       routing_{soup, parts_.certified, *parts_.finder, *parts_.transport,
-               [this] { return server_.is_idle(); }} {}
+               [this] { return server_.is_idle(); }},
+      routed_(routing_, watch_) {}
 
 RankedScene::~RankedScene() {
     parts_.transport->close();
@@ -31,11 +33,7 @@ Result<Done> RankedScene::route(RaySpan rays, const Exclusions& without, std::sp
                               hits.empty() ? hits : hits.subspan(first, count),
                               occluded.empty() ? occluded : occluded.subspan(first, count)};
         watch_.begin_part(part, parts);
-        RoutedCall routed(routing_, some, ++calls_, watch_);
-        const Result<Done> done = routed.run();
-        counted_.rays_sent += routed.visits_elsewhere();
-        counted_.seconds_waiting += routed.seconds_waiting();
-        if (!done)
+        if (const Result<Done> done = routed_.run(some); !done)
             return done;
     }
     return watch_.unless_cancelled();
@@ -186,6 +184,13 @@ Result<Done> RankedScene::all_hits(RaySpan rays, const Exclusions& without, cons
     return done;
 }
 
+void RankedScene::first_ranks(RaySpan rays, std::span<uint32_t> ranks) const {
+    parallel_for(ranks.size(), 256, [&](size_t first, size_t last) {
+        for (size_t i = first; i < last; ++i)
+            ranks[i] = parts_.finder->first_owner(rays[i]);
+    });
+}
+
 Result<Done> RankedScene::purge() {
     // The server may be tracing for another rank.
     return server_.purge();
@@ -198,12 +203,12 @@ ovc_statistics RankedScene::report() const {
     told.nearest_rays = counted_.nearest_rays;
     told.occlusion_rays = counted_.occlusion_rays;
     told.seconds_trace = counted_.seconds_trace;
-    told.rays_sent = counted_.rays_sent;
+    told.rays_sent = routed_.visits_elsewhere();
     told.rays_served = server_.served();
     const TransportCounts transport = parts_.transport->counts();
     told.bytes_sent = transport.bytes_sent;
     told.bytes_received = transport.bytes_received;
-    told.seconds_waiting = counted_.seconds_waiting;
+    told.seconds_waiting = routed_.seconds_waiting();
     return told;
 }
 

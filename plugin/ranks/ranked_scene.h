@@ -35,6 +35,7 @@ public:
                           std::span<uint8_t> occluded) override;
     bool takes_after() const override { return true; }
     Result<Done> all_hits(RaySpan rays, const Exclusions& without, const AllHits& all) override;
+    void first_ranks(RaySpan rays, std::span<uint32_t> ranks) const override;
     Result<Done> purge() override;
     ovc_statistics report() const override;
 
@@ -47,7 +48,7 @@ private:
     mutable VisitServer server_;
     const Routing routing_;
     ovc_statistics counted_{sizeof(ovc_statistics)}; // of calls on this rank
-    uint32_t calls_ = 0;
+    RoutedCall routed_;                              // takes one call after the other
 };
 
 } // namespace ovc

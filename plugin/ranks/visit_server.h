@@ -43,8 +43,8 @@ private:
 
     void run(const std::stop_token& stop);
     void serve(std::span<const Received> all, MessageKind kind);
-    void trace_nearest(Messages messages);
-    void trace_any(Messages messages);
+    template <class Answer, class Trace>
+    void answer(Messages messages, MessageKind kind, Trace&& trace);
     void fail(Messages messages, const Error& error);
 
     Structure& local_;
