@@ -53,6 +53,11 @@ public:
     /// rank is lost.
     Result<std::vector<RankBytes>> gather(std::span<const std::byte> mine,
                                           const GoesOn& goes_on) const;
+    /// The same, where take() gets the bytes of each rank, valid during the call only: those of all
+    /// ranks are then not there at once.
+    using Take = std::function<void(uint32_t rank, std::span<const std::byte>)>;
+    Result<Done> gather(std::span<const std::byte> mine, const GoesOn& goes_on,
+                        const Take& take) const;
     /// Brings the bytes of rank 0 to all ranks, which all call this. Errors as of gather().
     Result<RankBytes> spread(std::span<const std::byte> of_first, const GoesOn& goes_on) const;
     /// Returns for each ray the rank whose leaves of the scene it comes by first, of those that no

@@ -154,12 +154,15 @@ private:
     Result<Done> exchange(uint32_t round, std::span<const uint32_t> mine, bool complete) {
         const bool is_first = ranks_.is_first();
         const std::span<const uint32_t> told = is_first ? std::span<const uint32_t>() : mine;
-        const Result<std::vector<RankBytes>> all =
-            ranks_.gather(PixelBytes::of(film_, told, complete), goes_on());
-        if (!all)
-            return stop(all.error());
-        for (uint32_t rank = 1; is_first && rank < ranks_.count(); ++rank)
-            complete &= PixelBytes::restore((*all)[rank], pixels_of(rank, round), film_);
+        const Result<Done> gathered =
+            ranks_.gather(PixelBytes::of(film_, told, complete), goes_on(),
+                          [&](uint32_t rank, std::span<const std::byte> bytes) {
+                              if (rank != 0)
+                                  complete &=
+                                      PixelBytes::restore(bytes, pixels_of(rank, round), film_);
+                          });
+        if (!gathered)
+            return stop(gathered.error());
         const std::vector<uint32_t> for_all =
             options_.to_all
                 ? tiles_.pixels([&](uint32_t tile) { return round_of_tile_[tile] == round; })

@@ -56,26 +56,25 @@ ovc_result guarded(const void* bytes, size_t size, ovc_take_function take, Body&
     }
 }
 
+Notes::Take takes(ovc_take_function take, void* user) {
+    return [=](uint32_t rank, std::span<const std::byte> note) {
+        take(user, rank, note.data(), note.size());
+    };
+}
+
 ovc_result gather(const void* bytes, size_t size, ovc_take_function take, ovc_wait_function wait,
                   void* user) {
-    return guarded(bytes, size, take, [&]() -> Result<Done> {
-        const auto all = host_ranks().notes->gather(span_of(bytes, size), waits(wait, user));
-        if (!all)
-            return all.error();
-        for (uint32_t rank = 0; rank < all->size(); ++rank)
-            take(user, rank, (*all)[rank].data(), (*all)[rank].size());
-        return Done{};
+    return guarded(bytes, size, take, [&] {
+        return host_ranks().notes->gather(span_of(bytes, size), waits(wait, user),
+                                          takes(take, user));
     });
 }
 
 ovc_result spread(const void* bytes, size_t size, ovc_take_function take, ovc_wait_function wait,
                   void* user) {
-    return guarded(bytes, size, take, [&]() -> Result<Done> {
-        const auto first = host_ranks().notes->spread(span_of(bytes, size), waits(wait, user));
-        if (!first)
-            return first.error();
-        take(user, 0, first->data(), first->size());
-        return Done{};
+    return guarded(bytes, size, take, [&] {
+        return host_ranks().notes->spread(span_of(bytes, size), waits(wait, user),
+                                          takes(take, user));
     });
 }
 

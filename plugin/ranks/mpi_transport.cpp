@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cassert>
+#include <cstdio>
 #include <cstdlib>
 #include <list>
 #include <thread>
@@ -20,7 +21,51 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr double kDefaultTimeout = 60;
-constexpr int kMessageTag = 1, kHeartbeatTag = 2, kLostTag = 3;
+constexpr int kMessageTag = 1, kHeartbeatTag = 2, kLostTag = 3, kEndTag = 4;
+
+/// What end_mpi() knows of the ranks of MPI_COMM_WORLD.
+struct World {
+    double timeout_seconds = kDefaultTimeout;
+    std::vector<std::string> names;
+};
+
+World& world() {
+    static World* const all = new World; // there at exit
+    return *all;
+}
+
+/// Ends MPI, which waits for all ranks and would wait for ever for one that hangs. So each waits
+/// for the one before it first, and ends the job with a sentence where that does not come.
+void end_mpi() {
+    int rank = 0, ranks = 1, here = 1, there = 0, came = 0;
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+    MPI_Comm_size(MPI_COMM_WORLD, &ranks);
+    const int before = (rank + ranks - 1) % ranks;
+    MPI_Request requests[2];
+    MPI_Isend(&here, 1, MPI_INT, (rank + 1) % ranks, kEndTag, MPI_COMM_WORLD, &requests[0]);
+    MPI_Irecv(&there, 1, MPI_INT, before, kEndTag, MPI_COMM_WORLD, &requests[1]);
+    const auto timeout = std::chrono::duration<double>(world().timeout_seconds);
+    const auto until = Clock::now() + std::chrono::duration_cast<Clock::duration>(timeout);
+    while (MPI_Testall(2, requests, &came, MPI_STATUSES_IGNORE) == MPI_SUCCESS && !came &&
+           Clock::now() < until)
+        std::this_thread::sleep_for(std::chrono::microseconds(500));
+    const auto give_up = [=](const std::string& name) {
+        const std::string sentence =
+            format_text("overcast: error: {} has given no word for {} s while the job was ending\n",
+                        name, timeout.count());
+        std::fputs(sentence.c_str(), stderr);
+        MPI_Abort(MPI_COMM_WORLD, 1);
+    };
+    if (!came)
+        give_up(size_t(before) < world().names.size() ? world().names[size_t(before)]
+                                                      : format_text("rank {}", before));
+    // It may still stop between that and the end.
+    std::thread([=] {
+        std::this_thread::sleep_for(timeout);
+        give_up("a rank");
+    }).detach();
+    MPI_Finalize();
+}
 
 /// Starts MPI where the host has not, and then ends it with the process.
 Result<Done> start_mpi() {
@@ -39,7 +84,7 @@ Result<Done> start_mpi() {
             int over = 0;
             MPI_Finalized(&over);
             if (!over)
-                MPI_Finalize();
+                end_mpi();
         });
     }
     if (threads < MPI_THREAD_MULTIPLE)
@@ -62,6 +107,13 @@ public:
         rank_ = uint32_t(rank);
         ranks_ = uint32_t(ranks);
         gather_hosts();
+        int likeness = MPI_UNEQUAL;
+        MPI_Comm_compare(comm_, MPI_COMM_WORLD, &likeness);
+        if (likeness == MPI_CONGRUENT) {
+            world() = {timeout_seconds, {}};
+            for (uint32_t i = 0; i < ranks_; ++i)
+                world().names.push_back(name_of(i));
+        }
         thread_ = std::thread([this] { run(); });
     }
     ~MpiTransport() override {

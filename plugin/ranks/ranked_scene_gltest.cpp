@@ -68,16 +68,17 @@ protected:
 };
 
 TEST_F(RankedGl, EqualsBruteForceBitForBit) {
+    uint32_t number = 0;
     for (const auto& [name, soup] : test::unpleasant_soups())
-        for (const uint32_t count : {1u, 2u, 5u}) {
+        for (const uint32_t count : number++ == 0 ? std::vector{1u, 5u} : std::vector{3u}) {
             SCOPED_TRACE(name + ", " + std::to_string(count) + " ranks");
-            const auto rays = test::unpleasant_rays(soup, 40 + count, 900);
+            const auto rays = test::unpleasant_rays(soup, 40 + count, 500);
             const std::vector<Hit> expected = test::brute_force(soup, rays);
             auto ranks = make(soup, count, {.leaf_triangles = 40});
             ASSERT_EQ(ranks.size(), count);
             on_all(ranks, [&](size_t i, RankedScene& scene) {
                 // Of different lengths, and rank 2 asks nothing.
-                const size_t first = i == 2 ? rays.size() : i * 100;
+                const size_t first = i == 2 ? rays.size() : i * 50;
                 test::expect_answers(scene, std::span(rays).subspan(first),
                                      std::span(expected).subspan(first));
             });
@@ -123,17 +124,18 @@ Soup instances() {
 
 TEST_F(RankedGl, SharesInstancesOut) {
     const Soup soup = instances();
-    const auto rays = test::unpleasant_rays(soup, 50, 1500);
+    const auto rays = test::unpleasant_rays(soup, 50, 300);
     const std::vector<Hit> expected = test::brute_force(soup, rays);
-    for (const uint64_t everywhere : {uint64_t(0), uint64_t(64) << 10})
-        for (const uint64_t budget : {uint64_t(0), uint64_t(112) << 10}) {
-            auto ranks = make(soup, 3, {.budget_bytes = budget, .leaf_triangles = 100}, everywhere);
-            ASSERT_EQ(ranks.size(), 3u);
-            on_all(ranks, [&](size_t, RankedScene& scene) {
-                test::expect_answers(scene, rays, expected);
-            });
-            end(ranks);
-        }
+    struct {
+        uint64_t budget, everywhere;
+    } const cases[] = {{uint64_t(112) << 10, 0}, {0, uint64_t(64) << 10}};
+    for (const auto& [budget, everywhere] : cases) {
+        auto ranks = make(soup, 3, {.budget_bytes = budget, .leaf_triangles = 100}, everywhere);
+        ASSERT_EQ(ranks.size(), 3u);
+        on_all(ranks,
+               [&](size_t, RankedScene& scene) { test::expect_answers(scene, rays, expected); });
+        end(ranks);
+    }
 }
 
 /// Lets prims count that are no multiple of three, and remembers that it was asked in order.
@@ -149,7 +151,7 @@ public:
 
 TEST_F(RankedGl, KnowsWhatCounts) {
     const Soup soup = instances();
-    const auto rays = test::unpleasant_rays(soup, 51, 800);
+    const auto rays = test::unpleasant_rays(soup, 51, 200);
     const auto alone = build(soup, {.leaf_triangles = 100});
     auto ranks = make(soup, 3, {.leaf_triangles = 100});
     ASSERT_TRUE(alone);
