@@ -474,7 +474,7 @@ typedef struct ovc_statistics {
     uint64_t rays_sent;
     /* + rays of other ranks that visited this one */
     uint64_t rays_served;
-    /* + bytes that went to other ranks: rays, answers and signs of life */
+    /* + bytes that went to other ranks: rays, answers and heartbeats */
     uint64_t bytes_sent;
     /* + bytes that came from them */
     uint64_t bytes_received;

@@ -36,6 +36,12 @@ typedef struct ovc_ranks {
                          ovc_wait_function wait, void* user);
     /* Ends all processes at once, with this exit code. */
     void (*abort)(int code);
+    /* Sets ranks[i] to the rank whose leaves of the scene ray i comes by first, of those that no
+     * other rank has, and to 0xffffffff where it comes by none, or the scene is not shared out. A
+     * host whose ranks each trace their own rays sends fewer of them to others. The answers are
+     * those of all ranks. ranks: ray_count numbers. Errors are those of intersect. */
+    ovc_result (*first_ranks)(ovc_scene scene, const ovc_ray* rays, size_t ray_count,
+                              uint32_t* ranks);
 } ovc_ranks;
 
 /* Starts MPI where it is not, and returns the ranks; the same on each call. NULL: MPI cannot be

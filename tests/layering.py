@@ -40,7 +40,7 @@ PARTS = {
                            "plugin/leaf_store"},
     "plugin/two_level": {"plugin", "plugin/structure", "plugin/build", "plugin/plan",
                          "plugin/out_of_core", "plugin/leaf_store", "plugin/fallback"},
-    "plugin/ranks": {"plugin", "plugin/structure", "plugin/build", "plugin/plan",
+    "plugin/ranks": {"plugin", "plugin/abi", "plugin/structure", "plugin/build", "plugin/plan",
                      "plugin/two_level"},
 }
 
@@ -56,7 +56,7 @@ PLACES = {
     r"(OpenEXR/|Imf)": ["host/output/image_exr.cpp"],
     r"png\.h": ["importers/png.cpp"],
     r"embree": ["host/backend/backend_embree.cpp"],
-    r"mpi\.h": ["plugin/ranks/mpi_post.cpp", "plugin/examples/ranks.c"],
+    r"mpi\.h": ["plugin/ranks/mpi_transport.cpp", "plugin/examples/ranks.c"],
     r"boost/": ["importers/csg/exact.h"],
     r"tachyon\.h": ["plugin/hosts/tachyon/tachyon_triangle.h"],
     r"(gtest|gmock)/": [],

@@ -96,23 +96,34 @@ def processes_of(word):
     return sorted(found)
 
 
+def rank_of(process):
+    entries = pathlib.Path(f"/proc/{process}/environ").read_bytes().split(b"\0")
+    return int(next(e for e in entries if e.startswith(b"OMPI_COMM_WORLD_RANK=")).split(b"=")[1])
+
+
 def end_by_force(overcast, folder, whole, deadly, ranks, seconds, scene):
-    """Kills or stops a rank after so many seconds. Returns whether it came to that."""
+    """Kills or stops a rank after so many seconds. Returns its number and whether a film was kept;
+    None where it did not come to that."""
     picture = folder / "killed.png"
     for left in folder.glob("killed*"):
         left.unlink()
     render = [overcast, "render", *scene, "-q", "-o", str(picture)]
     job = subprocess.Popen(MPIRUN + ["-n", str(ranks)] + render +
-                           ["--ranks-own", "share", "--rank-timeout", "3"],
+                           ["--ranks-own", "share", "--rank-timeout", "3", "--save-every", "0"],
                            stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
                            env=ENVIRONMENT)
     time.sleep(seconds)
     those = processes_of(str(picture))
     if len(those) < ranks or job.poll() is not None:
         job.communicate()
-        return False
+        return None
     victim = random.choice(those)
-    os.kill(victim, deadly)
+    try:
+        rank = rank_of(victim)
+        os.kill(victim, deadly)
+    except OSError:  # it has just ended
+        job.communicate()
+        return None
     begun = time.monotonic()
     try:
         _, said = job.communicate(timeout=30)
@@ -121,7 +132,7 @@ def end_by_force(overcast, folder, whole, deadly, ranks, seconds, scene):
     took = time.monotonic() - begun
     if picture.exists():  # it was done already
         same(whole, picture, f"signal {deadly} after {seconds:.2f} s")
-        return False
+        return None
     if job.returncode == 0 or took > 10 + (3 if deadly == signal.SIGSTOP else 0):
         fail(f"signal {deadly}: exit {job.returncode} after {took:.1f} s\n{said}")
     if not re.search(r"rank \d+ .*on ", said):
@@ -130,9 +141,9 @@ def end_by_force(overcast, folder, whole, deadly, ranks, seconds, scene):
     kept = film.exists()
     run(random.choice([0, 2, 4]), render + ["--continue"])
     same(whole, picture, f"continued after signal {deadly} at {seconds:.2f} s, film {kept}")
-    print(f"signal {deadly} after {seconds:.2f} s: ended in {took:.1f} s, "
+    print(f"rank {rank} of {ranks}, signal {deadly} after {seconds:.2f} s: ended in {took:.1f} s, "
           f"{'went on with its film' if kept else 'nothing was saved'}", flush=True)
-    return True
+    return rank, kept
 
 
 def kill_ranks(overcast, folder, count, scene):
@@ -140,12 +151,16 @@ def kill_ranks(overcast, folder, count, scene):
     begun = time.monotonic()
     run(3, [overcast, "render", *scene, "-q", "-o", str(whole), "--ranks-own", "share"])
     length = time.monotonic() - begun
-    done = 0
-    while done < count:
-        deadly = signal.SIGSTOP if done % 10 == 9 else signal.SIGKILL
-        done += end_by_force(overcast, folder, whole, deadly, random.choice([2, 3, 4]),
+    done = []
+    while len(done) < count:
+        deadly = signal.SIGSTOP if len(done) % 10 == 9 else signal.SIGKILL
+        ended = end_by_force(overcast, folder, whole, deadly, random.choice([2, 3, 4]),
                              random.uniform(0.3, length), scene)
-    print(f"{done} ranks killed or stopped: each job has ended, and each picture is the same")
+        done += [ended] if ended else []
+    first = [kept for rank, kept in done if rank == 0]
+    print(f"{count} ranks killed or stopped, {len(first)} of them rank 0: each job has ended, and "
+          f"each picture is the same; a film was there {sum(kept for _, kept in done)} times, "
+          f"{sum(first)} times of rank 0's")
 
 
 def measure(overcast, folder):

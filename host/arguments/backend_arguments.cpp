@@ -122,8 +122,7 @@ Result<Done> BackendArguments::check_meaning(BackendKind kind) const {
     return Done{};
 }
 
-/// An error where an option for several ranks is given to a process that is alone.
-static Result<Done> check_ranks(const char* option, std::string_view text) {
+Result<Done> check_ranks(const char* option, std::string_view text) {
     if (text.empty() || Ranks::has_starter())
         return Done{};
     return Error{fmt::format("{} is for several processes, which this is not: mpirun -n 4 overcast "

@@ -17,6 +17,10 @@ namespace ovc {
 /// Returns the backend of that name. Error: lists the backends, with the one probably meant.
 Result<BackendKind> parse_backend(std::string_view name);
 
+/// Returns an error where an option for several ranks is given, with this text, to a process that
+/// is alone.
+Result<Done> check_ranks(const char* option, std::string_view text);
+
 /// Parses --ranks-own; an empty text is auto. Error: an unknown word, or one for a process that is
 /// alone.
 Result<ovc_ranks_own> parse_ranks_own(std::string_view text);

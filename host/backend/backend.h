@@ -17,6 +17,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace ovc {
 
@@ -55,6 +56,9 @@ public:
     /// Returns the pages that rays went through since the last call; none where the options did not
     /// ask for them or the backend cannot tell.
     virtual std::optional<ovc_active> take_active() { return {}; }
+    /// Returns for each ray the rank whose leaves it comes by first, of those that no other rank
+    /// has, or kNone; nothing where ranks do not share a scene out.
+    virtual std::vector<uint32_t> first_ranks(std::span<const Ray>) const { return {}; }
     /// Returns whether save() can do anything.
     virtual bool saves() const { return false; }
     /// Writes what was built, as a later run over the same soup takes it in BackendOptions::saved.

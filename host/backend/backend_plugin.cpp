@@ -282,6 +282,12 @@ public:
         return api().active(scene_.get(), &active) == OVC_OK ? std::optional(active) : std::nullopt;
     }
 
+    std::vector<uint32_t> first_ranks(std::span<const Ray> rays) const override {
+        const Ranks* const ranks = Ranks::of_run();
+        return ranks && is_two_level_ ? ranks->first_ranks(scene_.get(), rays)
+                                      : std::vector<uint32_t>();
+    }
+
     Result<bool> update(const Soup& soup, const SoupDifference& difference) override {
         if (!is_two_level_)
             return false;

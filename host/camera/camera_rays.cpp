@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <utility>
 
 namespace ovc {
 
@@ -49,6 +50,23 @@ CameraRays::CameraRays(const Pinhole& pinhole, const Film& film, std::span<const
             order_.push_back(pixel);
 }
 
+CameraRays::CameraRays(const Pinhole& pinhole, uint32_t samples, std::vector<uint32_t> pixels,
+                       std::span<const dvec2> points)
+    : pinhole_(pinhole), samples_(samples), order_(std::move(pixels)), points_(points) {
+    assert(points.empty() || samples == 1);
+}
+
+/// Returns the pixel that a point of the picture lies in.
+static glm::uvec2 pixel_at(const Pinhole& pinhole, const dvec2& point) {
+    return {std::min(uint32_t(point.x), pinhole.width() - 1),
+            std::min(uint32_t(point.y), pinhole.height() - 1)};
+}
+
+Ray ray_through(const Pinhole& pinhole, const dvec2& point) {
+    const glm::uvec2 pixel = pixel_at(pinhole, point);
+    return pinhole.ray(pixel.x, pixel.y, point - dvec2(pixel));
+}
+
 CameraRays::Place CameraRays::place(uint64_t i) const {
     if (points_.empty()) {
         const uint32_t pixel = order_[i / samples_], sample = uint32_t(i % samples_);
@@ -57,9 +75,8 @@ CameraRays::Place CameraRays::place(uint64_t i) const {
     }
     const uint32_t pixel = order_[i];
     const dvec2& at = points_[pixel];
-    const uint32_t x = std::min(uint32_t(at.x), pinhole_.width() - 1);
-    const uint32_t y = std::min(uint32_t(at.y), pinhole_.height() - 1);
-    return {pixel, 0, x, y, at - dvec2(x, y)};
+    const glm::uvec2 in = pixel_at(pinhole_, at);
+    return {pixel, 0, in.x, in.y, at - dvec2(in)};
 }
 
 void CameraRays::make(uint64_t first, size_t count, RayList<Path>& paths) const {

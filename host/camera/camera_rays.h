@@ -18,6 +18,9 @@ namespace ovc {
 /// first power of two are stratified both ways and in squares. Sobol 1967.
 dvec2 sample_place(uint32_t i, uint32_t samples);
 
+/// Returns the ray through a point of the picture, in pixels from its top left corner.
+Ray ray_through(const Pinhole& pinhole, const dvec2& point);
+
 class CameraRays {
 public:
     /// The pinhole must outlive it; the film need not.
@@ -26,6 +29,10 @@ public:
     /// corner, in their order, one for each pixel of the film that is not done. The points must
     /// outlive it.
     CameraRays(const Pinhole& pinhole, const Film& film, std::span<const dvec2> points);
+    /// Makes so many rays for each of these pixels of a film, in their order: through the pixel, or
+    /// through its point where there are points.
+    CameraRays(const Pinhole& pinhole, uint32_t samples, std::vector<uint32_t> pixels,
+               std::span<const dvec2> points);
 
     uint64_t size() const { return uint64_t(order_.size()) * samples_; }
 

@@ -77,6 +77,7 @@ struct RenderWords {
     std::string antialias, antialias_method, antialias_depth, jitter;
     std::string seed;
     std::string threads;
+    std::string save_every;
     bool go_on = false;
     std::string max_depth;
     std::string integrator = "whitted";
@@ -212,6 +213,10 @@ void RenderWords::add_run_to(CLI::App& app) {
     app.add_flag("--continue", go_on,
                  "Go on from what an interrupted run has left: the pixels in NAME.unfinished.film, "
                  "the frames that are there");
+    app.add_option("--save-every", save_every,
+                   "Under mpirun, the first rank keeps NAME.unfinished.film about so often, in "
+                   "case that it ends by force; default: 30")
+        ->type_name("SECONDS");
     app.add_option("--threads,--nthreads", threads,
                    "Cores to use at most, of the software renderer too; default: all")
         ->type_name("N");
@@ -404,6 +409,16 @@ static Result<Done> understand_counts(const RenderWords& words, RenderJob& job) 
     return Done{};
 }
 
+static Result<Done> understand_saving(const RenderWords& words, RenderJob& job) {
+    if (words.save_every.empty())
+        return Done{};
+    const Result<double> seconds = parse_real("--save-every", words.save_every, 0, 1e6);
+    if (!seconds)
+        return seconds.error();
+    job.render.keep_seconds = *seconds;
+    return check_ranks("--save-every", words.save_every);
+}
+
 static Result<Done> understand_antialias(const RenderWords& words, RenderJob& job) {
     Antialias how;
     if (!words.antialias_method.empty()) {
@@ -520,6 +535,8 @@ static Result<RenderJob> understand(const RenderWords& words) {
         return backend.error();
     job.backend = *backend;
     job.scene.host_bytes = job.backend.host_bytes;
+    if (const Result<Done> fine = understand_saving(words, job); !fine)
+        return fine.error();
     if (words.working_set && job.stats.empty())
         return Error{"--working-set is told in the statistics: --stats FILE.json"};
     if (words.working_set && structure_of(job.backend.kind) != OVC_STRUCTURE_TWO_LEVEL)

@@ -41,15 +41,28 @@ void Film::add(uint32_t pixel, const vec3& light) {
 
 Film::Sums Film::sums(uint32_t pixel) const {
     const auto& sum = sums_[pixel];
-    return {sum[0].load(), sum[1].load(), sum[2].load()};
+    const auto of = [&](size_t channel) { return sum[channel].load(std::memory_order_relaxed); };
+    return {of(0), of(1), of(2)};
 }
 
 void Film::restore(uint32_t pixel, const Sums& sums) {
-    assert(pixel < sums_.size());
-    for (size_t channel = 0; channel < 3; ++channel)
-        sums_[pixel][channel].store(sums[channel]);
-    if (under_way_[pixel].exchange(0) != 0)
-        ++done_;
+    restore({&pixel, 1}, {&sums, 1});
+}
+
+void Film::restore(std::span<const uint32_t> pixels, std::span<const Sums> sums) {
+    assert(pixels.size() == sums.size());
+    parallel_for(pixels.size(), 4096, [&](size_t first, size_t last) {
+        uint64_t done_now = 0;
+        for (size_t i = first; i < last; ++i) {
+            assert(pixels[i] < sums_.size());
+            for (size_t channel = 0; channel < 3; ++channel)
+                sums_[pixels[i]][channel].store(sums[i][channel], std::memory_order_relaxed);
+            std::atomic<uint32_t>& under_way = under_way_[pixels[i]];
+            done_now += under_way.load(std::memory_order_relaxed) != 0;
+            under_way.store(0, std::memory_order_release);
+        }
+        done_.fetch_add(done_now, std::memory_order_relaxed);
+    });
 }
 
 Image Film::image() const {

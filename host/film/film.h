@@ -10,6 +10,7 @@
 #include <cassert>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace ovc {
@@ -49,6 +50,8 @@ public:
     Sums sums(uint32_t pixel) const;
     /// Marks the pixel as done, with these sums. Call it before any ray of the pixel is answered.
     void restore(uint32_t pixel, const Sums& sums);
+    /// The same for several pixels, each named once. sums: one for each.
+    void restore(std::span<const uint32_t> pixels, std::span<const Sums> sums);
 
     /// Returns the picture. Pixels that are not done are black, with alpha 0.
     Image image() const;

@@ -81,11 +81,10 @@ namespace {
 /// What the functions of a call refer to.
 struct Waiting {
     const GoesOn& goes_on;
-    std::vector<RankBytes> taken;
+    const Ranks::Take& taker;
 
-    static void take(void* user, uint32_t, const void* bytes, size_t size) {
-        const auto* const first = static_cast<const std::byte*>(bytes);
-        static_cast<Waiting*>(user)->taken.emplace_back(first, first + size);
+    static void take(void* user, uint32_t rank, const void* bytes, size_t size) {
+        static_cast<Waiting*>(user)->taker(rank, {static_cast<const std::byte*>(bytes), size});
     }
     static int wait(void* user) { return static_cast<Waiting*>(user)->goes_on() ? 0 : 1; }
 };
@@ -97,23 +96,47 @@ static Error error_of(const ovc_ranks& table, ovc_result result) {
             result == OVC_ERROR_CANCELLED ? ErrorKind::Cancelled : ErrorKind::Other};
 }
 
-Result<std::vector<RankBytes>> Ranks::gather(std::span<const std::byte> mine,
-                                             const GoesOn& goes_on) const {
-    Waiting call{goes_on, {}};
+Result<Done> Ranks::gather(std::span<const std::byte> mine, const GoesOn& goes_on,
+                           const Take& take) const {
+    Waiting call{goes_on, take};
     if (const ovc_result result =
             table_.gather(mine.data(), mine.size(), Waiting::take, Waiting::wait, &call);
         result != OVC_OK)
         return error_of(table_, result);
-    return std::move(call.taken);
+    return Done{};
+}
+
+Result<std::vector<RankBytes>> Ranks::gather(std::span<const std::byte> mine,
+                                             const GoesOn& goes_on) const {
+    std::vector<RankBytes> all;
+    const Result<Done> done =
+        gather(mine, goes_on, [&](uint32_t, std::span<const std::byte> bytes) {
+            all.emplace_back(bytes.begin(), bytes.end());
+        });
+    if (!done)
+        return done.error();
+    return all;
 }
 
 Result<RankBytes> Ranks::spread(std::span<const std::byte> of_first, const GoesOn& goes_on) const {
-    Waiting call{goes_on, {}};
+    RankBytes first;
+    const Take take = [&](uint32_t, std::span<const std::byte> bytes) {
+        first.assign(bytes.begin(), bytes.end());
+    };
+    Waiting call{goes_on, take};
     if (const ovc_result result =
             table_.spread(of_first.data(), of_first.size(), Waiting::take, Waiting::wait, &call);
         result != OVC_OK)
         return error_of(table_, result);
-    return std::move(call.taken.front());
+    return first;
+}
+
+std::vector<uint32_t> Ranks::first_ranks(ovc_scene_t* scene, std::span<const Ray> rays) const {
+    std::vector<uint32_t> ranks(rays.size());
+    const auto* const abi_rays = reinterpret_cast<const ovc_ray*>(rays.data());
+    if (table_.first_ranks(scene, abi_rays, rays.size(), ranks.data()) != OVC_OK)
+        ranks.clear();
+    return ranks;
 }
 
 void Ranks::end_all(int code) const {

@@ -2,6 +2,7 @@
 // Ranks: the processes that mpirun has started to do one command's work together.
 #pragma once
 
+#include "core/ray.h"
 #include "core/result.h"
 
 #include <cstddef>
@@ -12,6 +13,7 @@
 #include <vector>
 
 struct ovc_ranks;
+struct ovc_scene_t;
 
 namespace ovc {
 
@@ -22,6 +24,10 @@ using RankBytes = std::vector<std::byte>;
 
 /// Asked some twenty times a second while something is waited for; false: no longer.
 using GoesOn = std::function<bool()>;
+/// The GoesOn of calls that only an answer or a lost rank ends.
+inline bool goes_on_always() {
+    return true;
+}
 
 class Ranks {
 public:
@@ -47,8 +53,16 @@ public:
     /// rank is lost.
     Result<std::vector<RankBytes>> gather(std::span<const std::byte> mine,
                                           const GoesOn& goes_on) const;
+    /// The same, where take() gets the bytes of each rank, valid during the call only: those of all
+    /// ranks are then not there at once.
+    using Take = std::function<void(uint32_t rank, std::span<const std::byte>)>;
+    Result<Done> gather(std::span<const std::byte> mine, const GoesOn& goes_on,
+                        const Take& take) const;
     /// Brings the bytes of rank 0 to all ranks, which all call this. Errors as of gather().
     Result<RankBytes> spread(std::span<const std::byte> of_first, const GoesOn& goes_on) const;
+    /// Returns for each ray the rank whose leaves of the scene it comes by first, of those that no
+    /// other rank has; kNone where there is none, and nothing where that cannot be told.
+    std::vector<uint32_t> first_ranks(ovc_scene_t* scene, std::span<const Ray> rays) const;
     /// Ends all processes at once, with this exit code.
     [[noreturn]] void end_all(int code) const;
 

@@ -122,7 +122,7 @@ private:
         const Part* const mine = tell(kind, rays, without.skip);
         if (!mine)
             return Error{"a rank is lost"};
-        const auto all = ranks_.gather(answers_of(*backend_, kind, *mine), [] { return true; });
+        const auto all = ranks_.gather(answers_of(*backend_, kind, *mine), goes_on_always);
         if (!all)
             return all.error();
         for (uint32_t rank = 0; rank < ranks_.count(); ++rank) {
@@ -153,7 +153,7 @@ private:
             call.rays.assign(rays.begin(), rays.end());
             call.skip.assign(skip.begin(), skip.end());
         }
-        if (!ranks_.spread(bytes_of_call(call), [] { return true; }))
+        if (!ranks_.spread(bytes_of_call(call), goes_on_always))
             return nullptr;
         if (!call.has_rays)
             return &known->second;
@@ -178,7 +178,7 @@ std::unique_ptr<Backend> make_shared_backend(const Ranks& ranks, std::unique_ptr
 Result<Done> serve_calls(const Ranks& ranks, std::span<const std::unique_ptr<Backend>> backends) {
     std::vector<std::map<uint64_t, Part>> parts(backends.size());
     while (true) {
-        const Result<RankBytes> told = ranks.spread({}, [] { return true; });
+        const Result<RankBytes> told = ranks.spread({}, goes_on_always);
         if (!told)
             return told.error();
         const Call call = call_of(*told);
@@ -192,13 +192,13 @@ Result<Done> serve_calls(const Ranks& ranks, std::span<const std::unique_ptr<Bac
         }
         const RankBytes answers =
             answers_of(*backends[call.backend], call.kind, known.at(call.key));
-        if (const auto sent = ranks.gather(answers, [] { return true; }); !sent)
+        if (const auto sent = ranks.gather(answers, goes_on_always); !sent)
             return sent.error();
     }
 }
 
 Result<Done> end_calls(const Ranks& ranks) {
-    const Result<RankBytes> told = ranks.spread(bytes_of_call(Call()), [] { return true; });
+    const Result<RankBytes> told = ranks.spread(bytes_of_call(Call()), goes_on_always);
     return told ? Result<Done>(Done{}) : told.error();
 }
 

@@ -3,78 +3,65 @@
 // force loses no more than a round.
 #include "host/ranks/shared_film.h"
 
+#include "core/system/stopwatch.h"
 #include "host/terminal/message.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cstring>
+#include <numeric>
 
 namespace ovc {
 namespace {
 
-/// A round has about so many rays a rank: more of them move fewer pages under a budget.
-constexpr uint64_t kRoundRays = uint64_t(1) << 20;
-constexpr uint64_t kMaxRounds = 64;
+/// A round has about so many rays a rank: more of them move fewer pages under a budget. But for
+/// long pictures, which would have more than a few rounds, it has up to so many.
+constexpr uint64_t kRoundRays = uint64_t(1) << 20, kMaxRoundRays = uint64_t(1) << 24;
+constexpr uint64_t kFewRounds = 64, kMaxRounds = 4096;
 
-/// Deals pixels out in tiles, so that neighbours' rays stay together and all ranks have about as
-/// much to do.
-class Tiles {
+uint32_t rounds_for(uint64_t rays_a_rank) {
+    return uint32_t(std::max(std::clamp<uint64_t>(rays_a_rank / kRoundRays, 1, kFewRounds),
+                             std::min(rays_a_rank / kMaxRoundRays, kMaxRounds)));
+}
+
+/// What a rank sends of pixels that all ranks know: whether they are complete, a byte for each that
+/// tells whether it is done, and the light of each.
+class PixelBytes {
 public:
-    Tiles(const Film& film, uint32_t ranks, uint32_t rounds)
-        : width_(film.width()),
-          side_(film.height() > 1 ? 16 : 1),
-          run_(film.height() > 1 ? 16 : 256),
-          ranks_(ranks),
-          rounds_(rounds) {}
-
-    uint32_t rank_of(uint32_t pixel) const { return (x(pixel) + y(pixel)) % ranks_; }
-    uint32_t round_of(uint32_t pixel) const {
-        return ((x(pixel) + y(pixel)) / ranks_ + y(pixel)) % rounds_;
+    static RankBytes of(const Film& film, std::span<const uint32_t> pixels, bool complete) {
+        RankBytes bytes(size_of(pixels.size()));
+        bytes[0] = std::byte(complete);
+        std::byte* const done = bytes.data() + 1;
+        std::byte* const light = done + pixels.size();
+        for (size_t i = 0; i < pixels.size(); ++i) {
+            done[i] = std::byte(film.done(pixels[i]));
+            const Film::Sums sums = film.sums(pixels[i]);
+            std::memcpy(light + i * sizeof(sums), &sums, sizeof(sums));
+        }
+        return bytes;
+    }
+    /// Returns whether the pixels are complete.
+    static bool restore(std::span<const std::byte> bytes, std::span<const uint32_t> pixels,
+                        Film& film) {
+        assert(bytes.size() == size_of(pixels.size()));
+        const std::byte* const done = bytes.data() + 1;
+        const std::byte* const light = done + pixels.size();
+        std::vector<uint32_t> some;
+        std::vector<Film::Sums> sums;
+        some.reserve(pixels.size());
+        sums.reserve(pixels.size());
+        for (size_t i = 0; i < pixels.size(); ++i)
+            if (done[i] != std::byte(0)) {
+                some.push_back(pixels[i]);
+                std::memcpy(&sums.emplace_back(), light + i * sizeof(Film::Sums),
+                            sizeof(Film::Sums));
+            }
+        film.restore(some, sums);
+        return bytes[0] != std::byte(0);
     }
 
 private:
-    uint32_t x(uint32_t pixel) const { return pixel % width_ / run_; }
-    uint32_t y(uint32_t pixel) const { return pixel / width_ / side_; }
-
-    const uint32_t width_, side_, run_, ranks_, rounds_;
-};
-
-/// Pixels that are done.
-struct Pixels {
-    bool complete = true; // all that were asked for
-    std::vector<uint32_t> pixels;
-    std::vector<Film::Sums> sums;
-
-    void add(uint32_t pixel, const Film& film) {
-        pixels.push_back(pixel);
-        sums.push_back(film.sums(pixel));
-    }
-    void restore(Film& film) const {
-        for (size_t i = 0; i < pixels.size(); ++i)
-            film.restore(pixels[i], sums[i]);
-    }
-    RankBytes bytes() const {
-        const auto numbers = std::as_bytes(std::span(pixels)),
-                   light = std::as_bytes(std::span(sums));
-        RankBytes bytes(1, std::byte(complete));
-        bytes.reserve(1 + numbers.size() + light.size());
-        bytes.insert(bytes.end(), numbers.begin(), numbers.end());
-        bytes.insert(bytes.end(), light.begin(), light.end());
-        return bytes;
-    }
-    static Pixels of(std::span<const std::byte> bytes) {
-        Pixels some;
-        const size_t count = bytes.size() / (sizeof(uint32_t) + sizeof(Film::Sums));
-        some.complete = bytes.front() != std::byte(0);
-        some.pixels.resize(count);
-        some.sums.resize(count);
-        if (count == 0)
-            return some;
-        const std::byte* const numbers = bytes.data() + 1;
-        std::memcpy(some.pixels.data(), numbers, count * sizeof(uint32_t));
-        std::memcpy(some.sums.data(), numbers + count * sizeof(uint32_t),
-                    count * sizeof(Film::Sums));
-        return some;
-    }
+    static size_t size_of(size_t pixels) { return 1 + pixels * (1 + sizeof(Film::Sums)); }
 };
 
 class SharedFilm {
@@ -83,21 +70,24 @@ public:
                const RenderPart& render, const RenderObserver& observe)
         : ranks_(ranks),
           film_(film),
-          to_all_(options.to_all),
-          rays_per_sample_(options.rays_per_sample),
+          options_(options),
+          tiles_(film.width(), film.height()),
           render_(render),
           observe_(observe) {}
 
     Result<RenderReport> run() {
         const uint64_t left = pixel_count() - film_.pixels_done();
-        const uint64_t rays = left * film_.samples() * rays_per_sample_;
-        const auto rounds =
-            uint32_t(std::clamp<uint64_t>(rays / (ranks_.count() * kRoundRays), 1, kMaxRounds));
+        const uint64_t rays = left * film_.samples() * options_.rays_per_sample;
+        rounds_ = rounds_for(rays / ranks_.count());
         report_.complete = true;
-        for (uint32_t round = 0; round < rounds && report_.complete; ++round)
-            if (const Result<Done> done = run_round(Tiles(film_, ranks_.count(), rounds), round);
-                !done)
+        if (const Result<Done> dealt = deal_tiles(); !dealt)
+            return dealt.error();
+        for (uint32_t round = 0; round < rounds_ && report_.complete; ++round) {
+            if (const Result<Done> done = run_round(round); !done)
                 return done.error();
+            if (round + 1 < rounds_)
+                keep();
+        }
         return report_;
     }
 
@@ -107,30 +97,42 @@ private:
         return [this] { return !observe_ || observe_(report_); };
     }
 
-    Result<Done> run_round(const Tiles& tiles, uint32_t round) {
-        Film part(film_.width(), film_.height(), film_.samples());
-        std::vector<uint32_t> asked;
-        for (uint32_t pixel = 0; pixel < pixel_count(); ++pixel)
-            if (!film_.done(pixel) && tiles.rank_of(pixel) == ranks_.rank() &&
-                tiles.round_of(pixel) == round)
-                asked.push_back(pixel);
-            else
-                part.restore(pixel, {});
-        Pixels mine;
-        mine.complete = trace(part);
-        for (const uint32_t pixel : asked)
-            if (part.done(pixel))
-                mine.add(pixel, part);
-        mine.restore(film_);
-        if (ranks_.is_first() && !mine.complete) {
+    /// Rank 0 deals the tiles out, for ranks must agree. The tiles of a rank take turns in rounds,
+    /// so that these take about as long.
+    Result<Done> deal_tiles() {
+        std::vector<uint32_t> owners;
+        if (ranks_.is_first())
+            owners = tiles_.deal(ranks_.count(), options_.first_ranks);
+        const Result<RankBytes> told = ranks_.spread(std::as_bytes(std::span(owners)), goes_on());
+        if (!told)
+            return stop(told.error());
+        owners_.resize(told->size() / sizeof(uint32_t));
+        std::memcpy(owners_.data(), told->data(), told->size());
+        std::vector<uint32_t> tiles_before(ranks_.count());
+        for (const uint32_t owner : owners_)
+            round_of_tile_.push_back(tiles_before[owner]++ % rounds_);
+        return Done{};
+    }
+
+    /// Returns the pixels of a round that are a rank's, whether they were done before or not.
+    std::vector<uint32_t> pixels_of(uint32_t rank, uint32_t round) const {
+        return tiles_.pixels(
+            [&](uint32_t tile) { return owners_[tile] == rank && round_of_tile_[tile] == round; });
+    }
+
+    Result<Done> run_round(uint32_t round) {
+        const std::vector<uint32_t> mine = pixels_of(ranks_.rank(), round);
+        const bool complete = trace(mine);
+        if (ranks_.is_first() && !complete) {
             report_.complete = false;
             return Done{};
         }
-        return exchange(mine);
+        return exchange(round, mine, complete);
     }
 
-    /// Returns whether all of the part's pixels are done.
-    bool trace(Film& part) {
+    /// Returns whether all of the pixels are done.
+    bool trace(std::vector<uint32_t> pixels) {
+        std::erase_if(pixels, [&](uint32_t pixel) { return film_.done(pixel); });
         const RenderReport before = report_;
         const RenderObserver observe = [&](const RenderReport& now) {
             RenderReport all = before;
@@ -138,7 +140,7 @@ private:
             all.pixels_done = film_.pixels_done();
             return !observe_ || observe_(all);
         };
-        const Result<RenderReport> done = render_(observe, part);
+        const Result<RenderReport> done = render_(observe, std::move(pixels));
         if (!done) {
             fail(done.error());
             return false;
@@ -147,27 +149,45 @@ private:
         return done->complete;
     }
 
-    Result<Done> exchange(const Pixels& mine) {
-        const Result<std::vector<RankBytes>> all = ranks_.gather(mine.bytes(), goes_on());
-        if (!all)
-            return stop(all.error());
-        Pixels joined;
-        for (const RankBytes& bytes : *all) {
-            const Pixels some = Pixels::of(bytes);
-            some.restore(film_);
-            joined.complete = joined.complete && some.complete;
-            if (!to_all_)
-                continue;
-            joined.pixels.insert(joined.pixels.end(), some.pixels.begin(), some.pixels.end());
-            joined.sums.insert(joined.sums.end(), some.sums.begin(), some.sums.end());
-        }
-        const Result<RankBytes> spread = ranks_.spread(joined.bytes(), goes_on());
+    /// Brings the pixels of all ranks to rank 0, and all of them to all ranks where these want
+    /// them. mine: those of this rank, complete or not.
+    Result<Done> exchange(uint32_t round, std::span<const uint32_t> mine, bool complete) {
+        const bool is_first = ranks_.is_first();
+        const std::span<const uint32_t> told = is_first ? std::span<const uint32_t>() : mine;
+        const Result<Done> gathered =
+            ranks_.gather(PixelBytes::of(film_, told, complete), goes_on(),
+                          [&](uint32_t rank, std::span<const std::byte> bytes) {
+                              if (rank != 0)
+                                  complete &=
+                                      PixelBytes::restore(bytes, pixels_of(rank, round), film_);
+                          });
+        if (!gathered)
+            return stop(gathered.error());
+        const std::vector<uint32_t> for_all =
+            options_.to_all
+                ? tiles_.pixels([&](uint32_t tile) { return round_of_tile_[tile] == round; })
+                : std::vector<uint32_t>();
+        const Result<RankBytes> spread = ranks_.spread(
+            is_first ? PixelBytes::of(film_, for_all, complete) : RankBytes(), goes_on());
         if (!spread)
             return stop(spread.error());
-        const Pixels of_all = Pixels::of(*spread);
-        of_all.restore(film_);
-        report_.complete = of_all.complete;
+        report_.complete = PixelBytes::restore(*spread, for_all, film_);
         return Done{};
+    }
+
+    /// Lets rank 0 keep its film where it has not for a while, and not so often that this takes
+    /// more than a twentieth of the time.
+    void keep() {
+        if (!ranks_.is_first() || !options_.keep || !report_.complete ||
+            since_kept_.seconds() < std::max(options_.keep_seconds, 20 * seconds_to_keep_))
+            return;
+        const Stopwatch watch;
+        if (const Result<Done> kept = options_.keep(film_); !kept && !has_told_) {
+            print_message(kept.error().message);
+            has_told_ = true;
+        }
+        seconds_to_keep_ = watch.seconds();
+        since_kept_ = Stopwatch();
     }
 
     Result<Done> stop(const Error& error) {
@@ -185,24 +205,33 @@ private:
 
     const Ranks& ranks_;
     Film& film_;
-    const bool to_all_;
-    const uint32_t rays_per_sample_;
+    const SharedFilmOptions& options_;
+    const FilmTiles tiles_;
     const RenderPart& render_;
     const RenderObserver& observe_;
+    uint32_t rounds_ = 1;
+    std::vector<uint32_t> owners_, round_of_tile_; // of each tile
+    Stopwatch since_kept_;
+    double seconds_to_keep_ = 0;
+    bool has_told_ = false; // why the film cannot be kept
     RenderReport report_;
 };
 
 } // namespace
 
 Result<Done> spread_film(const Ranks& ranks, Film& film) {
-    Pixels done;
-    for (uint32_t pixel = 0; ranks.is_first() && pixel < film.width() * film.height(); ++pixel)
-        if (film.done(pixel))
-            done.add(pixel, film);
-    const Result<RankBytes> spread = ranks.spread(done.bytes(), [] { return true; });
+    if (const auto begun = ranks.spread(RankBytes(film.pixels_done() > 0), goes_on_always); !begun)
+        return begun.error();
+    else if (begun->empty())
+        return Done{};
+    std::vector<uint32_t> all(size_t(film.width()) * film.height());
+    std::iota(all.begin(), all.end(), 0u);
+    const Result<RankBytes> spread = ranks.spread(
+        ranks.is_first() ? PixelBytes::of(film, all, /* complete= */ true) : RankBytes(),
+        goes_on_always);
     if (!spread)
         return spread.error();
-    Pixels::of(*spread).restore(film);
+    PixelBytes::restore(*spread, all, film);
     return Done{};
 }
 

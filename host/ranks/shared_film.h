@@ -3,6 +3,7 @@
 #pragma once
 
 #include "host/film/film.h"
+#include "host/ranks/film_tiles.h"
 #include "host/ranks/ranks.h"
 #include "host/render/render.h"
 
@@ -10,8 +11,9 @@
 
 namespace ovc {
 
-/// Renders the pixels of the part that are not done.
-using RenderPart = std::function<Result<RenderReport>(const RenderObserver&, Film& part)>;
+/// Renders these pixels of the film, none of which is done.
+using RenderPart =
+    std::function<Result<RenderReport>(const RenderObserver&, std::vector<uint32_t> pixels)>;
 
 /// Marks the pixels that are done on the film of rank 0 on all films. All ranks call it.
 Result<Done> spread_film(const Ranks& ranks, Film& film);
@@ -19,6 +21,10 @@ Result<Done> spread_film(const Ranks& ranks, Film& film);
 struct SharedFilmOptions {
     bool to_all = false;          // the films of all ranks get all pixels, not only that of rank 0
     uint32_t rays_per_sample = 1; // about so many, at least 1
+    FirstRanks first_ranks{};     // of the pixels' rays
+    /// Keeps the film so far; rank 0 calls it after a round where it has not for so many seconds.
+    std::function<Result<Done>(const Film&)> keep{};
+    double keep_seconds = 30;
 };
 
 /// Renders the pixels of the film that are not done, each on one rank; all ranks call it, with

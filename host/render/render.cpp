@@ -147,36 +147,51 @@ Result<RenderReport> render_picture(const Scene& scene, const Camera& camera, Ba
     const std::unique_ptr<Integrator> integrator = make_integrator(scene, camera, options);
     const Sight sight(scene, options.cutouts);
     const size_t lights = scene.lights.size();
+    const bool waits_for_ranks = options.ranks && backend.statistics().ranks > 1;
     const auto trace = [&](const CameraRays& rays, const RenderObserver& watch_it, Film& to) {
         return options.mode == RenderMode::Mixed
                    ? render_mixed(*integrator, lights, rays, sight, backend, watch_it, to)
                    : render_batched(*integrator, lights, rays, sight, backend, options.batch_rays,
-                                    watch_it, to);
+                                    watch_it, to, waits_for_ranks);
     };
     // Ranks share out the pixels of a film; else all of them are this process's.
     const uint32_t rays_per_sample = // a guess
         options.integrator == IntegratorKind::Path ? std::clamp(options.max_depth, 1u, 8u) : 1;
-    const auto render = [&](Film& to, bool to_all, const RenderObserver& watch_it,
-                            const RenderPart& part) {
-        return options.ranks
-                   ? render_shared(*options.ranks, to, {to_all, rays_per_sample}, part, watch_it)
-                   : part(watch_it, to);
+    const auto first_ranks = [&](std::span<const dvec2> points) {
+        return [&backend, &pinhole, points](std::span<const uint32_t> pixels) {
+            std::vector<Ray> rays;
+            for (const uint32_t pixel : pixels)
+                rays.push_back(points.empty()
+                                   ? pinhole.ray(pixel % pinhole.width(), pixel / pinhole.width())
+                                   : ray_through(pinhole, points[pixel]));
+            return backend.first_ranks(rays);
+        };
+    };
+    const auto render = [&](Film& to, SharedFilmOptions shared, const RenderObserver& watch_it,
+                            std::span<const dvec2> points) {
+        if (!options.ranks)
+            return trace(points.empty() ? CameraRays(pinhole, to) : CameraRays(pinhole, to, points),
+                         watch_it, to);
+        shared.rays_per_sample = rays_per_sample;
+        shared.first_ranks = first_ranks(points);
+        const RenderPart part = [&](const RenderObserver& watch_part,
+                                    std::vector<uint32_t> pixels) {
+            return trace(CameraRays(pinhole, to.samples(), std::move(pixels), points), watch_part,
+                         to);
+        };
+        return render_shared(*options.ranks, to, shared, part, watch_it);
     };
     const auto render_points = [&](std::span<const dvec2> points, const RenderObserver& watch_it,
                                    Film& to) {
-        return render(to, /* to_all= */ true, watch_it,
-                      [&](const RenderObserver& watch_part, Film& part) {
-                          return trace(CameraRays(pinhole, part, points), watch_part, part);
-                      });
+        return points.empty() ? RenderReport{.complete = true}
+                              : render(to, {.to_all = true}, watch_it, points);
     };
     const bool is_adaptive = options.antialias && film.pixels_done() == 0;
     Result<RenderReport> report =
         is_adaptive ? AdaptivePasses(pinhole, observe, render_points)
                           .run(*options.antialias, scene.gamma, film)
-                    : render(film, /* to_all= */ false, observe,
-                             [&](const RenderObserver& watch_part, Film& part) {
-                                 return trace(CameraRays(pinhole, part), watch_part, part);
-                             });
+                    : render(film, {.keep = options.keep, .keep_seconds = options.keep_seconds},
+                             observe, {});
     if (!report)
         return report;
     report->pixels_done = film.pixels_done();

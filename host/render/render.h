@@ -38,6 +38,9 @@ struct RenderOptions {
     /// at most about three times as many rays wait.
     size_t batch_rays = size_t(1) << 20;
     const Ranks* ranks = nullptr; // that render the picture together; null: this process alone
+    /// Keeps the film so far. Rank 0 calls it about so often, in case that it ends by force.
+    std::function<Result<Done>(const Film&)> keep{};
+    double keep_seconds = 30;
 };
 
 struct RayCounts {

@@ -215,7 +215,11 @@ private:
             progress.update(report);
             return !interrupt_.interrupted();
         };
-        return checked(render_picture(scene_, shot.camera, backend_, options_, observe, film));
+        RenderOptions options = options_;
+        options.keep = [&](const Film& so_far) {
+            return save_film(so_far, checksum_of_picture(shot), film_of(shot));
+        };
+        return checked(render_picture(scene_, shot.camera, backend_, options, observe, film));
     }
 
     Result<Done> save_finished(const View& shot, const Film& film, const FrameStats& frame) {
@@ -358,7 +362,7 @@ static Result<RankBytes> frames_there(const RenderJob& job) {
     RankBytes there;
     for (const uint32_t frame : frames_of(job))
         there.push_back(std::byte(is_there(job, frame)));
-    return job.render.ranks ? job.render.ranks->spread(there, [] { return true; })
+    return job.render.ranks ? job.render.ranks->spread(there, goes_on_always)
                             : Result<RankBytes>(std::move(there));
 }
 
@@ -468,7 +472,7 @@ static std::vector<Ray> camera_sample(const RenderJob& job, const PicturePart& p
 /// Brings what all ranks have counted to the first one.
 static Result<Done> gather_ranks(const Ranks& ranks, RenderStats& stats) {
     const RankStats mine{stats.tracing, stats.report.rays, host_peak_bytes()};
-    const auto all = ranks.gather(std::as_bytes(std::span(&mine, 1)), [] { return true; });
+    const auto all = ranks.gather(std::as_bytes(std::span(&mine, 1)), goes_on_always);
     if (!all)
         return all.error();
     RayCounts rays;
@@ -485,7 +489,7 @@ static Result<Done> gather_ranks(const Ranks& ranks, RenderStats& stats) {
 /// Ends the job, once the first rank has saved what there is.
 [[noreturn]] static void end_all_ranks(const Ranks& ranks, int code) {
     if (!ranks.is_first())
-        (void)ranks.spread({}, [] { return true; }); // which the first one never does
+        (void)ranks.spread({}, goes_on_always); // which the first one never does
     ranks.end_all(code);
 }
 

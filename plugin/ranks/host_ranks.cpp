@@ -2,7 +2,9 @@
 // The table of overcast_ranks.h.
 #include "plugin/overcast_ranks.h"
 
-#include "plugin/ranks/mpi_post.h"
+#include "plugin/abi/ray_call.h"
+#include "plugin/abi/scene_call.h"
+#include "plugin/ranks/mpi_transport.h"
 #include "plugin/ranks/notes.h"
 
 #include <cstdlib>
@@ -14,7 +16,7 @@ namespace ovc {
 namespace {
 
 struct HostRanks {
-    std::unique_ptr<Post> post;
+    std::unique_ptr<Transport> transport;
     std::unique_ptr<Notes> notes;
     std::vector<std::string> names;
     std::string error;
@@ -54,47 +56,55 @@ ovc_result guarded(const void* bytes, size_t size, ovc_take_function take, Body&
     }
 }
 
+Notes::Take takes(ovc_take_function take, void* user) {
+    return [=](uint32_t rank, std::span<const std::byte> note) {
+        take(user, rank, note.data(), note.size());
+    };
+}
+
 ovc_result gather(const void* bytes, size_t size, ovc_take_function take, ovc_wait_function wait,
                   void* user) {
-    return guarded(bytes, size, take, [&]() -> Result<Done> {
-        const auto all = host_ranks().notes->gather(span_of(bytes, size), waits(wait, user));
-        if (!all)
-            return all.error();
-        for (uint32_t rank = 0; rank < all->size(); ++rank)
-            take(user, rank, (*all)[rank].data(), (*all)[rank].size());
-        return Done{};
+    return guarded(bytes, size, take, [&] {
+        return host_ranks().notes->gather(span_of(bytes, size), waits(wait, user),
+                                          takes(take, user));
     });
 }
 
 ovc_result spread(const void* bytes, size_t size, ovc_take_function take, ovc_wait_function wait,
                   void* user) {
-    return guarded(bytes, size, take, [&]() -> Result<Done> {
-        const auto first = host_ranks().notes->spread(span_of(bytes, size), waits(wait, user));
-        if (!first)
-            return first.error();
-        take(user, 0, first->data(), first->size());
-        return Done{};
+    return guarded(bytes, size, take, [&] {
+        return host_ranks().notes->spread(span_of(bytes, size), waits(wait, user),
+                                          takes(take, user));
+    });
+}
+
+ovc_result first_ranks(ovc_scene scene, const ovc_ray* rays, size_t ray_count, uint32_t* ranks) {
+    return on_scene(scene, "first_ranks", [&] {
+        check_buffers("first_ranks", rays, ranks, ray_count);
+        const std::span<const Ray> all(reinterpret_cast<const Ray*>(rays), ray_count);
+        committed(scene, "first_ranks").first_ranks(all, {ranks, ray_count});
     });
 }
 
 bool open(double timeout_seconds) {
     HostRanks& all = host_ranks();
-    Result<std::unique_ptr<Post>> post = make_mpi_post({0, timeout_seconds});
-    if (!post)
+    Result<std::unique_ptr<Transport>> transport = make_mpi_transport({0, timeout_seconds});
+    if (!transport)
         return false;
-    all.post = std::move(*post);
-    all.notes = std::make_unique<Notes>(*all.post);
-    for (uint32_t rank = 0; rank < all.post->ranks(); ++rank)
-        all.names.push_back(all.post->name_of(rank));
-    std::atexit([] { host_ranks().post.reset(); }); // before MPI is ended
+    all.transport = std::move(*transport);
+    all.notes = std::make_unique<Notes>(*all.transport);
+    for (uint32_t rank = 0; rank < all.transport->ranks(); ++rank)
+        all.names.push_back(all.transport->name_of(rank));
+    std::atexit([] { host_ranks().transport.reset(); }); // before MPI is ended
     all.table = {sizeof(ovc_ranks),
-                 all.post->rank(),
-                 all.post->ranks(),
+                 all.transport->rank(),
+                 all.transport->ranks(),
                  [](uint32_t rank) { return host_ranks().names.at(rank).c_str(); },
                  [] { return host_ranks().error.c_str(); },
                  gather,
                  spread,
-                 [](int code) { abort_all_ranks(code); }};
+                 [](int code) { abort_all_ranks(code); },
+                 first_ranks};
     return true;
 }
 

@@ -2,7 +2,7 @@
 // The structure of libovercast-mpi.so: two-level, whose pages are shared out between ranks where
 // they do not fit, or where the config says so.
 #include "core/text/format_text.h"
-#include "plugin/ranks/mpi_post.h"
+#include "plugin/ranks/mpi_transport.h"
 #include "plugin/ranks/notes.h"
 #include "plugin/ranks/ranked_scene.h"
 #include "plugin/ranks/sharing.h"
@@ -42,34 +42,35 @@ Result<std::unique_ptr<Structure>> make_structure(const Soup& soup, GlThread& gl
                                                   const ovc_scene_config& config,
                                                   const LogSink& log, BuildProgress* progress,
                                                   LeafStore* store) {
-    Result<std::unique_ptr<Post>> post = make_mpi_post({config.communicator, config.rank_timeout});
-    if (!post)
-        return post.error();
+    Result<std::unique_ptr<Transport>> transport =
+        make_mpi_transport({config.communicator, config.rank_timeout});
+    if (!transport)
+        return transport.error();
     TwoLevelOptions options = two_level_options(config);
     options.store = store;
-    SharingOptions share{.rank = (*post)->rank(),
+    SharingOptions share{.rank = (*transport)->rank(),
                          .always = config.ranks_own == OVC_RANKS_OWN_SHARE,
                          .host_bytes = config.host_memory_bytes};
     share.gpu_bytes =
         config.gpu_memory_bytes ? config.gpu_memory_bytes : gl.info().default_budget_bytes();
-    share.shares.ranks = (*post)->ranks();
+    share.shares.ranks = (*transport)->ranks();
     share.shares.sample = {reinterpret_cast<const Ray*>(config.sample), size_t(config.sample_rays)};
     Sharing sharing(share, log);
-    if ((*post)->ranks() > 1 && config.ranks_own != OVC_RANKS_OWN_ALL) {
+    if ((*transport)->ranks() > 1 && config.ranks_own != OVC_RANKS_OWN_ALL) {
         options.choose_pages = [&](const BuiltScene& scene) { return sharing.choose(scene); };
         if (options.saved.empty() && !store && !options.leaf_triangles && !options.leaves)
-            options.leaves = kLeavesPerRank * (*post)->ranks();
+            options.leaves = kLeavesPerRank * (*transport)->ranks();
     }
     Result<std::unique_ptr<TwoLevel>> local = built_here(soup, gl, options, log, progress);
-    Notes notes(**post);
-    if (const Result<Done> all =
-            first_error(notes, **post, local ? Result<Done>(Done{}) : Result<Done>(local.error()));
+    Notes notes(**transport);
+    if (const Result<Done> all = first_error(
+            notes, **transport, local ? Result<Done>(Done{}) : Result<Done>(local.error()));
         !all)
         return all.error();
     if (!sharing.shares())
         return std::unique_ptr<Structure>(std::move(*local));
     return std::unique_ptr<Structure>(std::make_unique<RankedScene>(
-        soup, RankedParts{std::move(*post), std::move(*local), sharing.take_finder(),
+        soup, RankedParts{std::move(*transport), std::move(*local), sharing.take_finder(),
                           config.precision != OVC_PRECISION_FAST, LoopThreads::of_this_thread()}));
 }
 

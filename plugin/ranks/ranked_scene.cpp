@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cuts calls into journeys, asks filters about what these bring home, and counts.
+// Cuts calls into routed calls, asks filters about what these bring home, and counts.
 #include "plugin/ranks/ranked_scene.h"
 
+#include "core/system/parallel.h"
 #include "core/system/stopwatch.h"
 
 #include <algorithm>
@@ -12,30 +13,27 @@ namespace ovc {
 
 RankedScene::RankedScene(const Soup& soup, RankedParts parts)
     : parts_(std::move(parts)),
-      server_(*parts_.local, *parts_.post, parts_.threads),
-      itinerary_{soup, parts_.certified, *parts_.finder, *parts_.post,
-                 [this] { return server_.is_idle(); }} {}
+      server_(*parts_.local, *parts_.transport, parts_.threads),
+      routing_{soup, parts_.certified, *parts_.finder, *parts_.transport,
+               [this] { return server_.is_idle(); }},
+      routed_(routing_, watch_) {}
 
 RankedScene::~RankedScene() {
-    parts_.post->close();
+    parts_.transport->close();
 }
 
-Result<Done> RankedScene::travel(RaySpan rays, const Exclusions& without, std::span<Hit> hits,
-                                 std::span<uint8_t> occluded) {
-    constexpr size_t kMax = JourneyRays::kMaxRays;
+Result<Done> RankedScene::route(RaySpan rays, const Exclusions& without, std::span<Hit> hits,
+                                std::span<uint8_t> occluded) {
+    constexpr size_t kMax = RoutedRays::kMaxRays;
     const size_t parts = std::max<size_t>((rays.size() + kMax - 1) / kMax, 1);
     for (size_t part = 0; part < parts; ++part) {
         const size_t first = part * kMax, count = std::min(kMax, rays.size() - first);
         const Exclusions of_part = without.subspan(first, count);
-        const JourneyRays some{rays.subspan(first, count), of_part,
-                               hits.empty() ? hits : hits.subspan(first, count),
-                               occluded.empty() ? occluded : occluded.subspan(first, count)};
+        const RoutedRays some{rays.subspan(first, count), of_part,
+                              hits.empty() ? hits : hits.subspan(first, count),
+                              occluded.empty() ? occluded : occluded.subspan(first, count)};
         watch_.begin_part(part, parts);
-        Journey journey(itinerary_, some, ++calls_, watch_);
-        const Result<Done> done = journey.run();
-        counted_.rays_sent += journey.visits_elsewhere();
-        counted_.seconds_waiting += journey.seconds_waiting();
-        if (!done)
+        if (const Result<Done> done = routed_.run(some); !done)
             return done;
     }
     return watch_.unless_cancelled();
@@ -101,7 +99,7 @@ std::optional<std::vector<uint32_t>> dropped(std::span<const uint32_t> rays, con
 Result<Done> RankedScene::nearest(RaySpan rays, const Exclusions& without, std::span<Hit> hits) {
     Exclusions plain = without;
     plain.sieves.filters = {};
-    Result<Done> done = travel(rays, plain, hits, {});
+    Result<Done> done = route(rays, plain, hits, {});
     if (!done || without.sieves.filters.empty())
         return done;
     std::vector<uint32_t> asked(rays.size());
@@ -113,7 +111,7 @@ Result<Done> RankedScene::nearest(RaySpan rays, const Exclusions& without, std::
         if (further->empty())
             return Done{};
         GoingOn some(std::move(*further), rays, without, hits);
-        if (done = travel(some.rays, some.without(), some.hits, {}); !done)
+        if (done = route(some.rays, some.without(), some.hits, {}); !done)
             return done;
         for (size_t i = 0; i < some.numbers.size(); ++i)
             hits[some.numbers[i]] = some.hits[i];
@@ -137,7 +135,7 @@ Result<Done> RankedScene::occluded(RaySpan rays, const Exclusions& without,
     counted_.occlusion_rays += rays.size();
     Result<Done> done = Done{};
     if (without.sieves.filters.empty()) {
-        done = travel(rays, without, {}, occluded);
+        done = route(rays, without, {}, occluded);
     } else {
         std::vector<Hit> hits(rays.size());
         done = nearest(rays, without, hits);
@@ -186,6 +184,13 @@ Result<Done> RankedScene::all_hits(RaySpan rays, const Exclusions& without, cons
     return done;
 }
 
+void RankedScene::first_ranks(RaySpan rays, std::span<uint32_t> ranks) const {
+    parallel_for(ranks.size(), 256, [&](size_t first, size_t last) {
+        for (size_t i = first; i < last; ++i)
+            ranks[i] = parts_.finder->first_owner(rays[i]);
+    });
+}
+
 Result<Done> RankedScene::purge() {
     // The server may be tracing for another rank.
     return server_.purge();
@@ -193,17 +198,17 @@ Result<Done> RankedScene::purge() {
 
 ovc_statistics RankedScene::report() const {
     ovc_statistics told = server_.report();
-    told.rank = parts_.post->rank();
-    told.ranks = parts_.post->ranks();
+    told.rank = parts_.transport->rank();
+    told.ranks = parts_.transport->ranks();
     told.nearest_rays = counted_.nearest_rays;
     told.occlusion_rays = counted_.occlusion_rays;
     told.seconds_trace = counted_.seconds_trace;
-    told.rays_sent = counted_.rays_sent;
+    told.rays_sent = routed_.visits_elsewhere();
     told.rays_served = server_.served();
-    const PostCounts post = parts_.post->counts();
-    told.bytes_sent = post.bytes_sent;
-    told.bytes_received = post.bytes_received;
-    told.seconds_waiting = counted_.seconds_waiting;
+    const TransportCounts transport = parts_.transport->counts();
+    told.bytes_sent = transport.bytes_sent;
+    told.bytes_received = transport.bytes_received;
+    told.seconds_waiting = routed_.seconds_waiting();
     return told;
 }
 

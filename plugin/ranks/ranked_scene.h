@@ -3,8 +3,8 @@
 // with rays of its own or none.
 #pragma once
 
-#include "plugin/ranks/journey.h"
-#include "plugin/ranks/post.h"
+#include "plugin/ranks/routed_call.h"
+#include "plugin/ranks/transport.h"
 #include "plugin/ranks/visit_server.h"
 #include "plugin/structure/structure.h"
 
@@ -15,8 +15,8 @@ namespace ovc {
 
 /// The parts of a scene on one rank.
 struct RankedParts {
-    std::unique_ptr<Post> post;       // of this scene alone
-    std::unique_ptr<Structure> local; // has the pages of this rank
+    std::unique_ptr<Transport> transport; // of this scene alone
+    std::unique_ptr<Structure> local;     // has the pages of this rank
     std::unique_ptr<StopFinder> finder;
     bool certified = true;
     LoopThreads* threads = nullptr; // that loops run on
@@ -35,19 +35,20 @@ public:
                           std::span<uint8_t> occluded) override;
     bool takes_after() const override { return true; }
     Result<Done> all_hits(RaySpan rays, const Exclusions& without, const AllHits& all) override;
+    void first_ranks(RaySpan rays, std::span<uint32_t> ranks) const override;
     Result<Done> purge() override;
     ovc_statistics report() const override;
 
 private:
-    Result<Done> travel(RaySpan rays, const Exclusions& without, std::span<Hit> hits,
-                        std::span<uint8_t> occluded);
+    Result<Done> route(RaySpan rays, const Exclusions& without, std::span<Hit> hits,
+                       std::span<uint8_t> occluded);
     Result<Done> nearest(RaySpan rays, const Exclusions& without, std::span<Hit> hits);
 
     const RankedParts parts_;
     mutable VisitServer server_;
-    const Itinerary itinerary_;
+    const Routing routing_;
     ovc_statistics counted_{sizeof(ovc_statistics)}; // of calls on this rank
-    uint32_t calls_ = 0;
+    RoutedCall routed_;                              // takes one call after the other
 };
 
 } // namespace ovc

@@ -2,7 +2,7 @@
 // Ranks that share a scene out answer bit for bit what one process answers, whoever asks.
 #include "plugin/ranks/ranked_scene.h"
 
-#include "plugin/ranks/memory_post.h"
+#include "plugin/ranks/memory_transport.h"
 #include "plugin/ranks/sharing.h"
 #include "plugin/two_level/test_two_level.h"
 
@@ -13,21 +13,21 @@
 namespace ovc {
 namespace {
 
-using test::MemoryPost;
+using test::MemoryTransport;
 using test::ok;
 
 /// Several ranks of one scene, in threads.
 class RankedGl : public TwoLevelGl {
 protected:
     struct Rank {
-        MemoryPost* post = nullptr;
+        MemoryTransport* transport = nullptr;
         std::unique_ptr<RankedScene> scene;
         uint64_t pages = 0, bytes = 0;
     };
 
     std::vector<Rank> make(const Soup& soup, uint32_t count, const TwoLevelOptions& options,
                            uint64_t everywhere_bytes = 0) {
-        auto posts = MemoryPost::make(count);
+        auto transports = MemoryTransport::make(count);
         std::vector<Rank> ranks(count);
         for (uint32_t rank = 0; rank < count; ++rank) {
             SharingOptions share{.rank = rank};
@@ -39,12 +39,12 @@ protected:
             std::unique_ptr<TwoLevel> local = build(soup, here);
             if (!local)
                 return {};
-            ranks[rank].post = posts[rank].get();
+            ranks[rank].transport = transports[rank].get();
             ranks[rank].pages = local->scene().pages.size();
             ranks[rank].bytes = local->scene().level2_bytes();
             ranks[rank].scene = std::make_unique<RankedScene>(
-                soup, RankedParts{std::move(posts[rank]), std::move(local), sharing.take_finder(),
-                                  options.certify});
+                soup, RankedParts{std::move(transports[rank]), std::move(local),
+                                  sharing.take_finder(), options.certify});
         }
         return ranks;
     }
@@ -68,16 +68,17 @@ protected:
 };
 
 TEST_F(RankedGl, EqualsBruteForceBitForBit) {
+    uint32_t number = 0;
     for (const auto& [name, soup] : test::unpleasant_soups())
-        for (const uint32_t count : {1u, 2u, 5u}) {
+        for (const uint32_t count : number++ == 0 ? std::vector{1u, 5u} : std::vector{3u}) {
             SCOPED_TRACE(name + ", " + std::to_string(count) + " ranks");
-            const auto rays = test::unpleasant_rays(soup, 40 + count, 900);
+            const auto rays = test::unpleasant_rays(soup, 40 + count, 500);
             const std::vector<Hit> expected = test::brute_force(soup, rays);
             auto ranks = make(soup, count, {.leaf_triangles = 40});
             ASSERT_EQ(ranks.size(), count);
             on_all(ranks, [&](size_t i, RankedScene& scene) {
                 // Of different lengths, and rank 2 asks nothing.
-                const size_t first = i == 2 ? rays.size() : i * 100;
+                const size_t first = i == 2 ? rays.size() : i * 50;
                 test::expect_answers(scene, std::span(rays).subspan(first),
                                      std::span(expected).subspan(first));
             });
@@ -123,17 +124,18 @@ Soup instances() {
 
 TEST_F(RankedGl, SharesInstancesOut) {
     const Soup soup = instances();
-    const auto rays = test::unpleasant_rays(soup, 50, 1500);
+    const auto rays = test::unpleasant_rays(soup, 50, 300);
     const std::vector<Hit> expected = test::brute_force(soup, rays);
-    for (const uint64_t everywhere : {uint64_t(0), ~uint64_t(0)})
-        for (const uint64_t budget : {uint64_t(0), uint64_t(112) << 10}) {
-            auto ranks = make(soup, 3, {.budget_bytes = budget, .leaf_triangles = 100}, everywhere);
-            ASSERT_EQ(ranks.size(), 3u);
-            on_all(ranks, [&](size_t, RankedScene& scene) {
-                test::expect_answers(scene, rays, expected);
-            });
-            end(ranks);
-        }
+    struct {
+        uint64_t budget, everywhere;
+    } const cases[] = {{uint64_t(112) << 10, 0}, {0, uint64_t(64) << 10}};
+    for (const auto& [budget, everywhere] : cases) {
+        auto ranks = make(soup, 3, {.budget_bytes = budget, .leaf_triangles = 100}, everywhere);
+        ASSERT_EQ(ranks.size(), 3u);
+        on_all(ranks,
+               [&](size_t, RankedScene& scene) { test::expect_answers(scene, rays, expected); });
+        end(ranks);
+    }
 }
 
 /// Lets prims count that are no multiple of three, and remembers that it was asked in order.
@@ -149,7 +151,7 @@ public:
 
 TEST_F(RankedGl, KnowsWhatCounts) {
     const Soup soup = instances();
-    const auto rays = test::unpleasant_rays(soup, 51, 800);
+    const auto rays = test::unpleasant_rays(soup, 51, 200);
     const auto alone = build(soup, {.leaf_triangles = 100});
     auto ranks = make(soup, 3, {.leaf_triangles = 100});
     ASSERT_TRUE(alone);
@@ -203,7 +205,7 @@ TEST_F(RankedGl, SaysWhoIsLost) {
     const Soup soup = test::closed_grid(24);
     auto ranks = make(soup, 3, {.leaf_triangles = 40});
     ASSERT_EQ(ranks.size(), 3u);
-    ranks[0].post->lose(2);
+    ranks[0].transport->lose(2);
     const auto rays = test::rays_from_outside(52, 100);
     std::vector<Hit> hits(rays.size());
     const Result<Done> done = ranks[0].scene->intersect(rays, {}, hits);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cuts the pages, in the order of the scene, into stretches of equal bytes, and deals these out by
-// the rays that are expected in them.
+// Cuts the pages, in the order of the scene, into stretches, and deals these out by the rays that
+// are expected in them.
 #include "plugin/ranks/shares.h"
 
 #include "core/system/parallel.h"
@@ -9,13 +9,13 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <functional>
 #include <numeric>
 #include <random>
 
 namespace ovc {
 namespace {
 
-constexpr uint32_t kStretches = 4; // that each rank gets
 constexpr size_t kMaxTests =
     20'000'000; // of a box and a ray of the sample: some tenths of a second
 
@@ -39,11 +39,13 @@ std::vector<Ray> random_lines(const Box& box, size_t count) {
     return rays;
 }
 
-/// Returns how many of the rays are expected in each page. Half of those that come to a page are
-/// taken to end there, since the pages do not tell where.
-std::vector<double> expected_rays(std::span<const PageBox> boxes, size_t pages,
-                                  std::span<const Ray> rays) {
-    std::vector<double> expected(pages);
+/// Pages that a ray comes by, in order: so many at most, for few rays go on behind them.
+constexpr size_t kMaxOnWay = 6;
+using Way = std::array<uint32_t, kMaxOnWay>; // kNone behind the last
+
+/// Returns the pages on the way of each ray that comes by any.
+std::vector<Way> ways_of(std::span<const PageBox> boxes, std::span<const Ray> rays) {
+    std::vector<Way> ways;
     std::vector<std::pair<double, uint32_t>> entries;
     for (const Ray& ray : rays) {
         if (!ray.valid())
@@ -53,53 +55,159 @@ std::vector<double> expected_rays(std::span<const PageBox> boxes, size_t pages,
         for (const PageBox& box : boxes)
             if (const double t = entering.entry(box.box); t != kNoEntry)
                 entries.push_back({t, box.page});
+        if (entries.empty())
+            continue;
         std::ranges::sort(entries);
-        double left = 1;
-        for (const auto& [t, page] : entries)
-            expected[page] += left, left /= 2;
+        Way& way = ways.emplace_back();
+        way.fill(kNone);
+        for (size_t i = 0; i < std::min(entries.size(), kMaxOnWay); ++i)
+            way[i] = entries[i].second;
     }
-    return expected;
+    return ways;
 }
 
-/// Whose bytes and rays are dealt out.
-struct Pages {
-    std::vector<uint64_t> bytes;
-    std::vector<double> rays;
+/// The bytes of pages, and the rays that are expected to come by them. Half of those that come to a
+/// page are taken to end there, since the pages do not tell where.
+class Pages {
+public:
+    Pages(const BuiltScene& scene, std::vector<Way> ways)
+        : ways_(std::move(ways)), rays_(scene.pages.size()) {
+        for (const Page& page : scene.pages)
+            bytes_.push_back(page.bytes());
+        for (const Way& way : ways_) {
+            double left = 1;
+            for (size_t i = 0; i < kMaxOnWay && way[i] != kNone; ++i, left /= 2)
+                rays_[way[i]] += left;
+        }
+    }
+
+    /// Returns owners of the pages that have none yet: these are cut into `stretches` for each
+    /// rank, of equal parts of the bytes and of the rays, which weigh `by_rays` of the whole. They
+    /// are dealt out by the rays in them.
+    std::vector<uint32_t> deal(std::vector<uint32_t> owners, uint32_t ranks, uint32_t stretches,
+                               double by_rays) const {
+        std::vector<double> weights(owners.size());
+        const double all_bytes = sum(bytes_, owners), all_rays = sum(rays_, owners);
+        for (size_t i = 0; i < owners.size(); ++i)
+            if (owners[i] != kEveryRank)
+                weights[i] = (1 - by_rays) * double(bytes_[i]) / std::max(all_bytes, 1.0) +
+                             by_rays * rays_[i] / std::max(all_rays, 1e-9);
+        const size_t count = size_t(ranks) * stretches;
+        const double all = sum(weights, owners);
+        std::vector<double> rays(count);
+        std::vector<size_t> stretch(owners.size());
+        double before = 0;
+        for (size_t i = 0; i < owners.size(); ++i) {
+            if (owners[i] == kEveryRank)
+                continue;
+            const double middle = (before + weights[i] / 2) / std::max(all, 1e-300);
+            stretch[i] = std::min(size_t(middle * double(count)), count - 1);
+            rays[stretch[i]] += rays_[i];
+            before += weights[i];
+        }
+        const std::vector<uint32_t> owner = dealt(rays, ranks, stretches);
+        for (size_t i = 0; i < owners.size(); ++i)
+            if (owners[i] != kEveryRank)
+                owners[i] = owner[stretch[i]];
+        return owners;
+    }
+
+    /// Gives the pages of the most rays a byte to every rank, while there is room.
+    void give_popular_to_all(uint64_t room, std::vector<uint32_t>& owners) const {
+        std::vector<uint32_t> order(owners.size());
+        std::iota(order.begin(), order.end(), 0u);
+        const auto rays_a_byte = [&](uint32_t page) { return rays_[page] / double(bytes_[page]); };
+        std::ranges::stable_sort(order, std::greater(), rays_a_byte);
+        for (const uint32_t page : order)
+            if (owners[page] != kEveryRank && rays_[page] > 0 && bytes_[page] <= room) {
+                room -= bytes_[page];
+                owners[page] = kEveryRank;
+            }
+    }
+
+    /// Returns the largest share of a rank in the bytes or in the rays, where 1 is the mean.
+    double max_bytes(std::span<const uint32_t> owners, uint32_t ranks) const {
+        return max_share(bytes_, owners, ranks);
+    }
+    double max_rays(std::span<const uint32_t> owners, uint32_t ranks) const {
+        return max_share(rays_, owners, ranks);
+    }
+    /// Returns how many ranks a ray visits after its first one.
+    double further_visits(std::span<const uint32_t> owners) const {
+        double visits = 0;
+        for (const Way& way : ways_) {
+            double left = 1;
+            for (size_t i = 0; i < kMaxOnWay && way[i] != kNone; ++i, left /= 2) {
+                const auto same = [&](uint32_t page) { return owners[page] == owners[way[i]]; };
+                if (i > 0 && owners[way[i]] != kEveryRank &&
+                    std::none_of(way.begin(), way.begin() + ptrdiff_t(i), same))
+                    visits += left;
+            }
+        }
+        return visits / double(std::max<size_t>(ways_.size(), 1));
+    }
+
+private:
+    template <class T>
+    static double sum(const std::vector<T>& values, std::span<const uint32_t> owners) {
+        double all = 0;
+        for (size_t i = 0; i < owners.size(); ++i)
+            all += owners[i] == kEveryRank ? 0 : double(values[i]);
+        return all;
+    }
+    template <class T>
+    static double max_share(const std::vector<T>& values, std::span<const uint32_t> owners,
+                            uint32_t ranks) {
+        std::vector<double> has(ranks);
+        for (size_t i = 0; i < owners.size(); ++i)
+            if (owners[i] != kEveryRank)
+                has[owners[i]] += double(values[i]);
+        const double all = sum(values, owners);
+        return all > 0 ? *std::ranges::max_element(has) * ranks / all : 1;
+    }
+
+    /// Gives each rank so many stretches: that of the most rays to the rank of the fewest so far.
+    static std::vector<uint32_t> dealt(std::span<const double> rays, uint32_t ranks,
+                                       uint32_t stretches) {
+        std::vector<uint32_t> order(rays.size()), owner(rays.size()), has(ranks);
+        std::iota(order.begin(), order.end(), 0u);
+        std::ranges::stable_sort(order, [&](uint32_t a, uint32_t b) { return rays[a] > rays[b]; });
+        std::vector<double> load(ranks);
+        for (const uint32_t s : order) {
+            uint32_t min = kNone;
+            for (uint32_t rank = 0; rank < ranks; ++rank)
+                if (has[rank] < stretches && (min == kNone || load[rank] < load[min]))
+                    min = rank;
+            owner[s] = min;
+            ++has[min];
+            load[min] += rays[s];
+        }
+        return owner;
+    }
+
+    std::vector<Way> ways_;
+    std::vector<uint64_t> bytes_;
+    std::vector<double> rays_;
 };
 
-/// Deals out the pages that have no owner yet.
-void deal(const Pages& pages, uint32_t ranks, std::vector<uint32_t>& owners) {
-    uint64_t all = 0;
-    for (size_t i = 0; i < owners.size(); ++i)
-        all += owners[i] == kEveryRank ? 0 : pages.bytes[i];
-    const size_t count = size_t(ranks) * kStretches;
-    std::vector<double> rays(count);
-    std::vector<size_t> stretch(owners.size());
-    uint64_t before = 0;
-    for (size_t i = 0; i < owners.size(); ++i) {
-        if (owners[i] == kEveryRank)
-            continue;
-        const double middle = double(before) + double(pages.bytes[i]) / 2;
-        stretch[i] = std::min(size_t(middle / double(all) * double(count)), count - 1);
-        rays[stretch[i]] += pages.rays[i];
-        before += pages.bytes[i];
-    }
-    std::vector<uint32_t> order(count), owner(count), has(ranks);
-    std::iota(order.begin(), order.end(), 0u);
-    std::ranges::stable_sort(order, [&](uint32_t a, uint32_t b) { return rays[a] > rays[b]; });
-    std::vector<double> load(ranks);
-    for (const uint32_t s : order) {
-        uint32_t least = kNone;
-        for (uint32_t rank = 0; rank < ranks; ++rank)
-            if (has[rank] < kStretches && (least == kNone || load[rank] < load[least]))
-                least = rank;
-        owner[s] = least;
-        ++has[least];
-        load[least] += rays[s];
-    }
-    for (size_t i = 0; i < owners.size(); ++i)
-        if (owners[i] != kEveryRank)
-            owners[i] = owner[stretch[i]];
+/// Tries long and short stretches, by bytes and by rays, and returns the owners with which a
+/// picture should take least: the busiest rank's rays, and the visits from rank to rank, each of
+/// which costs about what tracing one does. Ranks keep about the same bytes in any case.
+std::vector<uint32_t> best_owners(const Pages& pages, const std::vector<uint32_t>& owners,
+                                  uint32_t ranks) {
+    constexpr double kMaxBytes = 1.15; // of the mean
+    std::vector<uint32_t> best;
+    double min_cost = 0;
+    for (const uint32_t stretches : {4u, 2u, 1u})
+        for (const double by_rays : {0.0, 0.25, 0.5, 0.75}) {
+            std::vector<uint32_t> tried = pages.deal(owners, ranks, stretches, by_rays);
+            const double over = std::max(pages.max_bytes(tried, ranks) - kMaxBytes, 0.0);
+            const double cost =
+                pages.max_rays(tried, ranks) + pages.further_visits(tried) + 1000 * over;
+            if (best.empty() || cost < min_cost)
+                best = std::move(tried), min_cost = cost;
+        }
+    return best;
 }
 
 } // namespace
@@ -124,7 +232,9 @@ std::vector<PageBox> page_boxes(const BuiltScene& scene) {
 }
 
 /// Gives the pages of meshes that are placed several times to every rank, while there is room.
-static void give_to_all(const BuiltScene& scene, uint64_t room, std::vector<uint32_t>& owners) {
+/// Returns the room that is left.
+static uint64_t give_instances_to_all(const BuiltScene& scene, uint64_t room,
+                                      std::vector<uint32_t>& owners) {
     std::vector<const SharedMesh*> meshes;
     for (const SharedMesh& mesh : scene.shared)
         if (mesh.places.size() > 1)
@@ -139,13 +249,14 @@ static void give_to_all(const BuiltScene& scene, uint64_t room, std::vector<uint
         room -= bytes;
         std::fill_n(owners.begin() + mesh->first_page, mesh->scene.pages.size(), kEveryRank);
     }
+    return room;
 }
 
 std::vector<uint32_t> share_out(const BuiltScene& scene, std::span<const PageBox> boxes,
                                 const ShareOptions& options) {
     assert(options.ranks > 0);
     std::vector<uint32_t> owners(scene.pages.size(), 0);
-    give_to_all(scene, options.everywhere_bytes, owners);
+    const uint64_t room = give_instances_to_all(scene, options.everywhere_bytes, owners);
     Box around;
     for (const PageBox& box : boxes)
         around.add(box.box);
@@ -157,11 +268,9 @@ std::vector<uint32_t> share_out(const BuiltScene& scene, std::span<const PageBox
     const size_t step = std::max<size_t>(options.sample.size() / max_rays, 1);
     for (size_t i = 0; i < options.sample.size(); i += step)
         rays.push_back(options.sample[i]);
-    Pages pages{{}, expected_rays(boxes, owners.size(), rays)};
-    for (const Page& page : scene.pages)
-        pages.bytes.push_back(page.bytes());
-    deal(pages, options.ranks, owners);
-    return owners;
+    const Pages pages(scene, ways_of(boxes, rays));
+    pages.give_popular_to_all(room, owners);
+    return best_owners(pages, owners, options.ranks);
 }
 
 } // namespace ovc

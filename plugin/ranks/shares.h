@@ -27,15 +27,17 @@ std::vector<PageBox> page_boxes(const BuiltScene& scene);
 
 struct ShareOptions {
     uint32_t ranks = 1;
-    /// Pages of meshes that are placed several times are on every rank while they take no more than
-    /// this together, those of the most instances first: most rays come by them.
+    /// Pages of meshes that are placed several times, those of the most instances first, and then
+    /// those that the most rays a byte come by are on every rank while they take no more than this
+    /// together.
     uint64_t everywhere_bytes = uint64_t(24) << 20;
     /// Rays such as will be traced. None: random lines through the scene.
     std::span<const Ray> sample{};
 };
 
-/// Returns the owner of each page. Ranks get about the same number of bytes, in a few stretches of
-/// pages that lie together, and as far as these allow the same number of the sample's rays.
+/// Returns the owner of each page. Ranks get about the same number of bytes, and as far as these
+/// allow the same number of the sample's rays, in stretches of pages that lie together: as few as
+/// let the sample's rays visit few ranks.
 std::vector<uint32_t> share_out(const BuiltScene& scene, std::span<const PageBox> boxes,
                                 const ShareOptions& options);
 

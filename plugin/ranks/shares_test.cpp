@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 
 namespace ovc {
@@ -56,45 +57,98 @@ TEST(BoxEntry, IsThereForARayWithHardlyAnyDirection) {
     EXPECT_EQ(box_entry({{-1, 0, 2}, 0, {1e-300, 1e-310, 0}}, box), kNoEntry);
 }
 
+/// Returns neighbours, rays from all over, or some that run along an axis, and at times an invalid
+/// one.
+std::vector<Ray> packet_of_rays(test::Random& random, int kind) {
+    const Ray middle{random.point(-2, 2), 0, random.point(-1, 1)};
+    std::vector<Ray> rays(1 + random.below(StopFinder::kPacket), middle);
+    for (Ray& ray : rays) {
+        ray.org += random.point(-1, 1) * (kind % 4 ? 0.01 : 1.0);
+        ray.dir += random.point(-1, 1) * (kind % 4 ? 0.01 : 1.0);
+        if (kind % 8 == 1)
+            ray.dir[kind / 8 % 3] = random.below(2) ? 0.0 : -0.0;
+        if (kind % 8 == 2)
+            ray.t_max = random(0, 2);
+        if (kind % 64 == 3 && random.below(8) == 0)
+            ray.org.x = std::numeric_limits<double>::quiet_NaN();
+    }
+    return rays;
+}
+
 TEST(StopFinder, FindsEveryRankOfTheBoxesOnTheWay) {
     test::Random random(2);
-    std::vector<PageBox> boxes;
-    std::vector<uint32_t> owners;
-    constexpr uint32_t kRanks = 7;
-    for (uint32_t page = 0; page < 1500; ++page) {
-        const dvec3 at = random.point(-1, 1);
-        boxes.push_back({{at, at + random.point(0, 0.1)}, page});
-        owners.push_back(page % 50 ? uint32_t(random.below(kRanks)) : kEveryRank);
-    }
-    const StopFinder finder(boxes, owners, /* here= */ 3);
-    std::vector<Stop> stops;
-    for (int i = 0; i < 2000; ++i) {
-        Ray ray{random.point(-2, 2), 0, random.point(-1, 1)};
-        if (i % 4 == 0)
-            ray.dir[i / 4 % 3] = i % 8 ? 0.0 : -0.0;
-        finder.find(ray, stops);
-        std::vector<double> first(kRanks, kNoEntry);
-        for (const PageBox& box : boxes) {
-            const uint32_t rank = owners[box.page] == kEveryRank ? 3 : owners[box.page];
-            first[rank] = std::min(first[rank], box_entry(ray, box.box));
+    constexpr uint32_t kRanks = 7, kHere = 3;
+    for (const int spread : {1, 50}) { // ranks have pages all over, or in a corner each
+        std::vector<PageBox> boxes;
+        std::vector<uint32_t> owners;
+        for (uint32_t page = 0; page < 700; ++page) {
+            owners.push_back(page % 50 ? uint32_t(random.below(kRanks)) : kEveryRank);
+            const double corner = spread == 1 ? 0 : double(page % kRanks);
+            const dvec3 at = random.point(-1, 1) / double(spread) + corner / kRanks;
+            boxes.push_back({{at, at + random.point(0, 0.1) / double(spread)}, page});
         }
-        for (uint32_t rank = 0; rank < kRanks; ++rank) {
-            const auto found = std::ranges::find(stops, rank, &Stop::rank);
-            if (first[rank] == kNoEntry)
-                continue; // a part around several boxes may be met where they are not
-            ASSERT_NE(found, stops.end());
-            EXPECT_LE(found->t, first[rank] * (1 + 1e-15) + 1e-300);
+        const StopFinder finder(boxes, owners, kHere);
+        for (int i = 0; i < 300; ++i) {
+            const std::vector<Ray> rays = packet_of_rays(random, i);
+            std::vector<Stop> all;
+            std::vector<uint32_t> ends(rays.size());
+            finder.find(rays, all, ends);
+            for (size_t j = 0; j < rays.size(); ++j) {
+                const auto stops =
+                    std::span(all).subspan(j ? ends[j - 1] : 0, ends[j] - (j ? ends[j - 1] : 0));
+                if (!rays[j].valid()) {
+                    ASSERT_EQ(stops.size(), 1u);
+                    EXPECT_EQ(stops[0].rank, kHere);
+                    continue;
+                }
+                std::vector<double> first(kRanks, kNoEntry);
+                for (const PageBox& box : boxes) {
+                    const uint32_t owner = owners[box.page];
+                    double& min = first[owner == kEveryRank ? kHere : owner];
+                    min = std::min(min, box_entry(rays[j], box.box));
+                }
+                for (uint32_t rank = 0; rank < kRanks; ++rank) {
+                    EXPECT_LE(std::ranges::count(stops, rank, &Stop::rank), 1);
+                    if (first[rank] == kNoEntry)
+                        continue; // a part around several boxes may be met where they are not
+                    const auto found = std::ranges::find(stops, rank, &Stop::rank);
+                    ASSERT_NE(found, stops.end());
+                    EXPECT_LE(found->t, first[rank] * (1 + 1e-15) + 1e-300);
+                }
+                EXPECT_TRUE(std::ranges::is_sorted(stops, {}, &Stop::t));
+            }
         }
-        EXPECT_TRUE(std::ranges::is_sorted(stops, {}, &Stop::t));
-        for (const Stop& stop : stops)
-            EXPECT_EQ(std::ranges::count(stops, stop.rank, &Stop::rank), 1);
     }
 }
 
+/// Where all boxes that a packet comes by are of this rank, or none are, no ray is looked at alone.
+TEST(StopFinder, LeavesOutRanksThatAPacketDoesNotComeBy) {
+    const std::vector<PageBox> boxes = {{{dvec3(0), dvec3(1)}, 0}, {{dvec3(5), dvec3(6)}, 1}};
+    const std::vector<uint32_t> owners = {0, 1};
+    const StopFinder finder(boxes, owners, /* here= */ 0);
+    std::vector<Stop> stops;
+    std::vector<uint32_t> ends(2);
+    const std::vector<Ray> to_0 = {{{0.2, 0.2, -3}, 0, {0, 0, 1}}, {{0.3, 0.2, -3}, 0, {0, 0, 1}}};
+    finder.find(to_0, stops, ends);
+    ASSERT_EQ(stops.size(), 2u);
+    EXPECT_EQ(stops[0].rank, 0u);
+    EXPECT_LE(stops[0].t, 3);
+    const std::vector<Ray> away = {{{0.2, 0.2, -3}, 0, {0, 0, -1}},
+                                   {{0.3, 0.2, -3}, 0, {0, 0, -1}}};
+    finder.find(away, stops, ends);
+    EXPECT_EQ(stops.size(), 2u);
+    EXPECT_EQ(finder.first_owner(to_0[0]), 0u);
+    EXPECT_EQ(finder.first_owner({{5.5, 5.5, 0}, 0, {0, 0, 1}}), 1u);
+    EXPECT_EQ(finder.first_owner(away[0]), kNone);
+}
+
 TEST(StopFinder, KnowsNoStopsWhereThereAreNoPages) {
-    std::vector<Stop> stops(3);
-    StopFinder({}, {}, 0).find(Ray(), stops);
+    std::vector<Stop> stops;
+    std::vector<uint32_t> ends(1, 7);
+    const Ray ray;
+    StopFinder({}, {}, 0).find({&ray, 1}, stops, ends);
     EXPECT_TRUE(stops.empty());
+    EXPECT_EQ(ends[0], 0u);
 }
 
 } // namespace

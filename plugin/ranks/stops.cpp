@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Joins the boxes of each rank to a few, and tests a ray with those of the ranks that it comes by.
+// Joins the boxes of each rank to a few, and tests rays with them: first a packet with all of them,
+// then each of its rays with those that are left, where these are of several ranks.
 #include "plugin/ranks/stops.h"
 
 #include <algorithm>
 #include <cassert>
+#include <limits>
+#include <map>
 
 namespace ovc {
 
@@ -11,71 +14,98 @@ namespace ovc {
 /// vain, and take longer to test.
 static constexpr size_t kPartsPerRank = 32;
 
-void StopFinder::Boxes::add(const Box& box) {
-    for (int axis = 0; axis < 3; ++axis) {
-        sides_[axis].push_back(box.lo[axis]);
-        sides_[3 + axis].push_back(box.hi[axis]);
-    }
-}
-
-void StopFinder::Boxes::enter(const EnteringRay& ray, std::vector<double>& entries) const {
-    entries.resize(size());
-    const double* in[3];
-    const double* out[3];
-    for (int axis = 0; axis < 3; ++axis) {
-        in[axis] = sides_[ray.goes_down(axis) ? 3 + axis : axis].data();
-        out[axis] = sides_[ray.goes_down(axis) ? axis : 3 + axis].data();
-    }
-    for (size_t i = 0; i < entries.size(); ++i)
-        entries[i] = ray.entry({in[0][i], in[1][i], in[2][i]}, {out[0][i], out[1][i], out[2][i]});
-}
-
 StopFinder::StopFinder(std::span<const PageBox> boxes, std::span<const uint32_t> owners,
-                       uint32_t here) {
-    const auto rank_of = [&](const PageBox& box) {
-        return owners[box.page] == kEveryRank ? here : owners[box.page];
-    };
-    std::vector<std::vector<Box>> of_rank;
-    for (const PageBox& box : boxes) {
-        of_rank.resize(std::max(of_rank.size(), size_t(rank_of(box)) + 1));
-        of_rank[rank_of(box)].push_back(box.box);
-    }
-    for (size_t rank = 0; rank < of_rank.size(); ++rank) {
-        const std::vector<Box>& all = of_rank[rank];
-        if (all.empty())
-            continue;
-        ranks_.push_back(uint32_t(rank));
-        parts_.emplace_back();
-        Box around;
+                       uint32_t here)
+    : here_(here) {
+    std::map<uint32_t, std::vector<Box>> of_owner;
+    for (const PageBox& box : boxes)
+        of_owner[owners[box.page]].push_back(box.box);
+    for (const auto& [owner, all] : of_owner) {
         // Pages stand in the order of the KD-tree, so that neighbours lie together.
         const size_t group = (all.size() + kPartsPerRank - 1) / kPartsPerRank;
+        std::vector<Box> few;
         for (size_t first = 0; first < all.size(); first += group) {
-            Box part;
+            Box& part = few.emplace_back();
             for (size_t i = first; i < std::min(all.size(), first + group); ++i)
                 part.add(all[i]);
-            parts_.back().add(part);
-            around.add(part);
         }
-        around_.add(around);
+        parts_.push_back({owner, BoxLanes(few)});
+    }
+    for (const Part& part : parts_)
+        all_.push_back(&part);
+}
+
+void StopFinder::find(std::span<const Ray> rays, std::vector<Stop>& stops,
+                      std::span<uint32_t> ends) const {
+    assert(!rays.empty() && rays.size() <= kPacket && ends.size() == rays.size());
+    thread_local std::vector<Part> entered; // by the packet, and of their boxes those that are
+    thread_local std::vector<const Part*> parts;
+    const RayPacket packet(rays);
+    parts = all_;
+    if (packet.is_bounded()) {
+        parts.clear();
+        entered.resize(parts_.size());
+        double t = kNoEntry;
+        for (size_t i = 0; i < parts_.size(); ++i) {
+            t = std::min(t, parts_[i].boxes.enter(packet, entered[i].boxes));
+            entered[i].owner = parts_[i].owner;
+            if (!entered[i].boxes.empty())
+                parts.push_back(&entered[i]);
+        }
+        // To trace a ray here in vain costs about what finding it out does, unlike sending it away.
+        const bool are_here =
+            std::ranges::all_of(parts, [&](const Part* part) { return rank_of(*part) == here_; });
+        if (are_here) {
+            for (uint32_t& end : ends) {
+                if (!parts.empty())
+                    stops.push_back({t, here_});
+                end = uint32_t(stops.size());
+            }
+            return;
+        }
+    }
+    for (size_t i = 0; i < rays.size(); ++i) {
+        if (packet.is_bounded() || rays[i].valid())
+            find(rays[i], parts, stops);
+        else
+            stops.push_back({-std::numeric_limits<double>::infinity(), here_});
+        ends[i] = uint32_t(stops.size());
     }
 }
 
-void StopFinder::find(const Ray& ray, std::vector<Stop>& stops) const {
-    stops.clear();
-    thread_local std::vector<double> of_ranks, of_parts;
+void StopFinder::find(const Ray& ray, std::span<const Part* const> parts,
+                      std::vector<Stop>& stops) const {
     const EnteringRay entering(ray);
-    around_.enter(entering, of_ranks);
-    for (size_t i = 0; i < ranks_.size(); ++i) {
-        if (of_ranks[i] == kNoEntry)
+    const size_t first = stops.size();
+    const auto from = [&] { return stops.begin() + ptrdiff_t(first); };
+    for (const Part* part : parts) {
+        const double t = part->boxes.enter(entering);
+        if (t == kNoEntry)
             continue;
-        parts_[i].enter(entering, of_parts);
-        const double t = *std::ranges::min_element(of_parts);
-        if (t != kNoEntry)
-            stops.push_back({t, ranks_[i]});
+        const auto same = std::find_if(
+            from(), stops.end(), [&](const Stop& stop) { return stop.rank == rank_of(*part); });
+        if (same != stops.end())
+            same->t = std::min(same->t, t);
+        else
+            stops.push_back({t, rank_of(*part)});
     }
-    std::ranges::sort(stops, [](const Stop& a, const Stop& b) {
-        return a.t < b.t || (a.t == b.t && a.rank < b.rank);
-    });
+    if (stops.size() > first + 1)
+        std::sort(from(), stops.end(), [](const Stop& a, const Stop& b) {
+            return a.t < b.t || (a.t == b.t && a.rank < b.rank);
+        });
+}
+
+uint32_t StopFinder::first_owner(const Ray& ray) const {
+    if (!ray.valid())
+        return kNone;
+    const EnteringRay entering(ray);
+    double min = kNoEntry;
+    uint32_t first = kNone;
+    for (const Part& part : parts_)
+        if (part.owner != kEveryRank)
+            if (const double t = part.boxes.enter(entering); t < min)
+                min = t, first = part.owner;
+    return first;
 }
 
 } // namespace ovc

@@ -2,9 +2,8 @@
 // Stops: the ranks that a ray has to visit, in the order in which it comes by their pages.
 #pragma once
 
-#include "core/box.h"
 #include "core/ray.h"
-#include "plugin/ranks/box_entry.h"
+#include "plugin/ranks/box_lanes.h"
 #include "plugin/ranks/shares.h"
 
 #include <cstdint>
@@ -25,25 +24,31 @@ public:
     /// owners: of each page. here: the rank that stands for every rank, where all have a page.
     StopFinder(std::span<const PageBox> boxes, std::span<const uint32_t> owners, uint32_t here);
 
-    /// Sets `stops` to those of a valid ray, by t and then by rank. No rank stands there twice.
-    void find(const Ray& ray, std::vector<Stop>& stops) const;
+    /// So many rays are looked at together before each is by itself: neighbours, best of all.
+    static constexpr size_t kPacket = 32;
+
+    /// Appends the stops of at most kPacket rays, ray after ray, by t and then by rank; a rank
+    /// stands there once for a ray. An invalid ray has `here` as its stop. Sets ends[i] to
+    /// stops.size() behind those of ray i.
+    void find(std::span<const Ray> rays, std::vector<Stop>& stops, std::span<uint32_t> ends) const;
+    /// Returns the first rank on a ray's way whose pages no other rank has; kNone where there is
+    /// none, and for an invalid ray. It is the same on all ranks.
+    uint32_t first_owner(const Ray& ray) const;
 
 private:
-    /// Boxes side by side, which one loop tests, several at once.
-    class Boxes {
-    public:
-        void add(const Box& box);
-        size_t size() const { return sides_[0].size(); }
-        /// Sets entries[i] to the entry of box i.
-        void enter(const EnteringRay& ray, std::vector<double>& entries) const;
-
-    private:
-        std::vector<double> sides_[6]; // lo.x, lo.y, lo.z, hi.x, hi.y, hi.z
+    struct Part {
+        uint32_t owner = kNone; // kEveryRank: of pages that all ranks have
+        BoxLanes boxes;         // a few around them
     };
 
-    std::vector<uint32_t> ranks_; // that have pages
-    Boxes around_;                // all pages of each of these
-    std::vector<Boxes> parts_;    // a few boxes around them
+    void find(const Ray& ray, std::span<const Part* const> parts, std::vector<Stop>& stops) const;
+    uint32_t rank_of(const Part& part) const {
+        return part.owner == kEveryRank ? here_ : part.owner;
+    }
+
+    const uint32_t here_;
+    std::vector<Part> parts_;      // one for each owner
+    std::vector<const Part*> all_; // of these
 };
 
 } // namespace ovc

@@ -2,6 +2,8 @@
 // Joins the visits that wait to batches, traces these, and cuts the answers up again.
 #include "plugin/ranks/visit_server.h"
 
+#include "plugin/ranks/visit_arrays.h"
+
 #include <algorithm>
 #include <chrono>
 #include <cstring>
@@ -10,55 +12,82 @@
 
 namespace ovc {
 
-/// A batch has so many rays at most, unless one parcel has more.
+/// A batch has so many rays at most, unless one message has more.
 static constexpr size_t kMaxBatch = size_t(1) << 17;
 
-/// The visits of several parcels as a call takes them.
+/// The visits of several messages as a call takes them. A single message's rays stay where they
+/// are; those of several are copied, into arrays that keep their memory from batch to batch.
 struct VisitServer::Batch {
-    std::vector<Ray> rays;
-    std::vector<TriangleId> skip;
-    std::vector<Hit> after;
-    std::vector<uint32_t> masks;
-    std::vector<Hit> hits;
-    std::vector<uint8_t> occluded;
+    std::span<const Ray> rays;
+    Exclusions without;
 
-    /// Takes the visits of these letters. The arrays keep their memory from batch to batch.
-    void fill(Letters letters) {
-        rays.clear();
-        skip.clear();
-        after.clear();
-        masks.clear();
-        bool has_after = false, has_masks = false;
-        for (const Inbox::Letter* letter : letters)
-            for (const RankVisit& visit : letter->parcel.items<RankVisit>()) {
-                rays.push_back(visit.ray);
-                skip.push_back(visit.skip);
-                after.push_back({visit.after_t, 0, 0, visit.after});
-                masks.push_back(visit.mask);
-                has_after = has_after || !HitPlace(after.back()).is_before_all();
-                has_masks = has_masks || visit.mask != 0;
-            }
-        if (!has_after)
-            after.clear();
-        if (!has_masks)
-            masks.clear();
+    void fill(Messages messages) {
+        size_t count = 0;
+        uint32_t arrays = 0;
+        for (const Received* received : messages) {
+            count += received->message.head().count;
+            arrays |= received->message.head().arrays;
+        }
+        if (messages.size() == 1) {
+            const VisitArrays visits(messages[0]->message);
+            show(visits.rays, visits.skip, visits.masks, visits.after.size());
+            set_after(visits, 0);
+            return;
+        }
+        rays_.resize(count);
+        skip_.resize(arrays & VisitArrays::kHasSkip ? count : 0);
+        masks_.resize(arrays & VisitArrays::kHasMasks ? count : 0);
+        show(rays_, skip_, masks_, arrays & VisitArrays::kHasAfter ? count : 0);
+        size_t first = 0;
+        for (const Received* received : messages) {
+            const VisitArrays visits(received->message);
+            std::ranges::copy(visits.rays, rays_.begin() + ptrdiff_t(first));
+            put(visits.skip, TriangleId(), first, visits.rays.size(), skip_);
+            put(visits.masks, 0u, first, visits.rays.size(), masks_);
+            set_after(visits, first);
+            first += visits.rays.size();
+        }
     }
 
-    Exclusions without() const {
-        Exclusions all(skip, after);
-        all.sieves.masks = masks;
-        return all;
+private:
+    void show(std::span<const Ray> all, std::span<const TriangleId> skip,
+              std::span<const uint32_t> masks, size_t afters) {
+        rays = all;
+        after_.assign(afters, kBeforeAll);
+        without = Exclusions(skip, after_);
+        without.sieves.masks = masks;
     }
+    void set_after(const VisitArrays& visits, size_t first) {
+        for (size_t i = 0; i < visits.after.size(); ++i)
+            after_[first + i] = {visits.after[i].t, 0, 0, visits.after[i].id};
+    }
+    /// Copies a message's array, or `other` for each of its visits where it has none.
+    template <class T>
+    static void put(std::span<T> array, const T& other, size_t first, size_t count,
+                    std::vector<T>& all) {
+        if (all.empty())
+            return;
+        const auto to = all.begin() + ptrdiff_t(first);
+        if (array.empty())
+            std::fill_n(to, count, other);
+        else
+            std::ranges::copy(array, to);
+    }
+
+    std::vector<Ray> rays_;
+    std::vector<TriangleId> skip_;
+    std::vector<Hit> after_;
+    std::vector<uint32_t> masks_;
 };
 
-VisitServer::VisitServer(Structure& local, Post& post, LoopThreads* threads)
-    : local_(local), post_(post), threads_(threads), batch_(std::make_unique<Batch>()) {
+VisitServer::VisitServer(Structure& local, Transport& transport, LoopThreads* threads)
+    : local_(local), transport_(transport), threads_(threads), batch_(std::make_unique<Batch>()) {
     thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
 }
 
 VisitServer::~VisitServer() {
     thread_.request_stop();
-    post_.visits.wake();
+    transport_.visits.wake();
 }
 
 void VisitServer::run(const std::stop_token& stop) {
@@ -66,81 +95,83 @@ void VisitServer::run(const std::stop_token& stop) {
     if (threads_)
         scope.emplace(*threads_);
     while (!stop.stop_requested()) {
-        std::vector<Inbox::Letter> letters = post_.visits.take(std::chrono::milliseconds(50));
+        std::vector<Received> all = transport_.visits.take(std::chrono::milliseconds(50));
         // Others have waited for their rays to come here already.
         std::ranges::stable_partition(
-            letters, [&](const Inbox::Letter& letter) { return letter.from != post_.rank(); });
-        is_idle_ = letters.empty();
+            all, [&](const Received& received) { return received.from != transport_.rank(); });
+        is_idle_ = all.empty();
         // Rays that ask for any hit have no children, so nothing waits for the others' sake.
-        for (const ParcelKind kind : {ParcelKind::NearestVisits, ParcelKind::AnyVisits})
-            serve(letters, kind);
+        for (const MessageKind kind : {MessageKind::NearestVisits, MessageKind::AnyVisits})
+            serve(all, kind);
         is_idle_ = true;
     }
 }
 
-void VisitServer::serve(std::span<const Inbox::Letter> letters, ParcelKind kind) {
-    std::vector<const Inbox::Letter*> some;
+void VisitServer::serve(std::span<const Received> all, MessageKind kind) {
+    std::vector<const Received*> some;
     const auto trace = [&] {
         if (some.empty())
             return;
         const std::lock_guard lock(local_mutex_);
         try {
             batch_->fill(some);
-            (kind == ParcelKind::AnyVisits) ? trace_any(some) : trace_nearest(some);
+            if (kind == MessageKind::AnyVisits)
+                answer<uint8_t>(some, MessageKind::Occlusions, [&](std::span<uint8_t> occluded) {
+                    return local_.occluded(batch_->rays, batch_->without, occluded);
+                });
+            else
+                answer<Hit>(some, MessageKind::Hits, [&](std::span<Hit> hits) {
+                    return local_.intersect(batch_->rays, batch_->without, hits);
+                });
         } catch (const std::exception& error) {
             fail(some, Error{error.what()});
         }
         some.clear();
     };
     size_t rays = 0;
-    for (const Inbox::Letter& letter : letters) {
-        if (letter.parcel.kind() != kind)
+    for (const Received& received : all) {
+        if (received.message.kind() != kind)
             continue;
-        const size_t more = letter.parcel.items<RankVisit>().size();
+        const size_t more = received.message.head().count;
         if (rays + more > kMaxBatch)
             trace(), rays = 0;
-        some.push_back(&letter);
+        some.push_back(&received);
         rays += more;
-        served_ += letter.from == post_.rank() ? 0 : more;
+        served_ += received.from == transport_.rank() ? 0 : more;
     }
     trace();
 }
 
-void VisitServer::trace_nearest(Letters letters) {
-    std::vector<Hit>& hits = batch_->hits;
-    hits.resize(batch_->rays.size());
-    if (const Result<Done> done = local_.intersect(batch_->rays, batch_->without(), hits); !done)
-        return fail(letters, done.error());
-    size_t next = 0;
-    for (const Inbox::Letter* letter : letters) {
-        std::vector<HitThere> answers;
-        for (const RankVisit& visit : letter->parcel.items<RankVisit>())
-            answers.push_back({hits[next++], visit.slot});
-        post_.send(letter->from, Parcel(ParcelKind::Hits, letter->parcel.call(),
-                                        std::span<const HitThere>(answers)));
+/// Sends the answers that trace(span) writes to where their rays came from.
+template <class Answer, class Trace>
+void VisitServer::answer(Messages messages, MessageKind kind, Trace&& trace) {
+    std::vector<Message> answers;
+    for (const Received* received : messages) {
+        const MessageHead asked = received->message.head();
+        answers.push_back(
+            Message({kind, asked.call, asked.number, asked.count}, asked.count * sizeof(Answer)));
+    }
+    std::vector<Answer> room(messages.size() == 1 ? 0 : batch_->rays.size());
+    const auto all = messages.size() == 1 ? answers[0].items<Answer>() : std::span<Answer>(room);
+    if (const Result<Done> done = trace(all); !done)
+        return fail(messages, done.error());
+    size_t first = 0;
+    for (size_t i = 0; i < messages.size(); ++i) {
+        const auto items = answers[i].items<Answer>();
+        if (messages.size() > 1)
+            std::ranges::copy(all.subspan(first, items.size()), items.begin());
+        first += items.size();
+        transport_.send(messages[i]->from, std::move(answers[i]));
     }
 }
 
-void VisitServer::trace_any(Letters letters) {
-    std::vector<uint8_t>& occluded = batch_->occluded;
-    occluded.resize(batch_->rays.size());
-    if (const Result<Done> done = local_.occluded(batch_->rays, batch_->without(), occluded); !done)
-        return fail(letters, done.error());
-    size_t next = 0;
-    for (const Inbox::Letter* letter : letters) {
-        std::vector<OcclusionThere> answers;
-        for (const RankVisit& visit : letter->parcel.items<RankVisit>())
-            answers.push_back({visit.slot, occluded[next++]});
-        post_.send(letter->from, Parcel(ParcelKind::Occlusions, letter->parcel.call(),
-                                        std::span<const OcclusionThere>(answers)));
-    }
-}
-
-void VisitServer::fail(Letters letters, const Error& error) {
+void VisitServer::fail(Messages messages, const Error& error) {
     const std::string told = text_of_error(error);
-    for (const Inbox::Letter* letter : letters)
-        post_.send(letter->from,
-                   Parcel(ParcelKind::Failure, letter->parcel.call(), std::span<const char>(told)));
+    for (const Received* received : messages) {
+        const MessageHead asked = received->message.head();
+        transport_.send(received->from, Message({MessageKind::Failure, asked.call, asked.number},
+                                                std::span<const char>(told)));
+    }
 }
 
 } // namespace ovc

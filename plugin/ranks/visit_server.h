@@ -4,7 +4,7 @@
 #pragma once
 
 #include "core/system/parallel.h"
-#include "plugin/ranks/post.h"
+#include "plugin/ranks/transport.h"
 #include "plugin/structure/structure.h"
 
 #include <atomic>
@@ -18,7 +18,7 @@ class VisitServer {
 public:
     /// local: traces through the pages of this rank; only the server calls it from now on. threads:
     /// those that loops run on, or null.
-    VisitServer(Structure& local, Post& post, LoopThreads* threads);
+    VisitServer(Structure& local, Transport& transport, LoopThreads* threads);
     ~VisitServer();
     VisitServer(const VisitServer&) = delete;
 
@@ -39,16 +39,16 @@ public:
 
 private:
     struct Batch;
-    using Letters = std::span<const Inbox::Letter* const>;
+    using Messages = std::span<const Received* const>;
 
     void run(const std::stop_token& stop);
-    void serve(std::span<const Inbox::Letter> letters, ParcelKind kind);
-    void trace_nearest(Letters letters);
-    void trace_any(Letters letters);
-    void fail(Letters letters, const Error& error);
+    void serve(std::span<const Received> all, MessageKind kind);
+    template <class Answer, class Trace>
+    void answer(Messages messages, MessageKind kind, Trace&& trace);
+    void fail(Messages messages, const Error& error);
 
     Structure& local_;
-    Post& post_;
+    Transport& transport_;
     LoopThreads* const threads_;
     const std::unique_ptr<Batch> batch_; // under way
     std::mutex local_mutex_;

@@ -19,6 +19,7 @@
 #include "plugin/structure/call_watch.h"
 #include "plugin/structure/triangle_source.h"
 
+#include <algorithm>
 #include <cassert>
 #include <memory>
 #include <span>
@@ -68,6 +69,11 @@ public:
     virtual Hit nearest_on_cpu(const Ray&, const Exclusion&, const RaySieve&) const { return {}; }
     virtual bool occluded_on_cpu(const Ray&, const Exclusion&, const RaySieve&) const {
         return false;
+    }
+    /// Sets ranks[i] to the rank whose pages ray i comes by first, of those that no other rank has;
+    /// kNone where there is none, as always where the structure is one process's.
+    virtual void first_ranks([[maybe_unused]] RaySpan rays, std::span<uint32_t> ranks) const {
+        std::ranges::fill(ranks, kNone);
     }
     /// Counts the pages that rays were traced through since the last call of this. Error: the
     /// structure cannot tell, or was not asked to when it was built.

@@ -47,6 +47,10 @@ void check_config(const ovc_scene_config& config, const DeviceInfo& device) {
                            name, config.host_memory_bytes));
     if (config.tell_active)
         refuse(format_text("{} does not tell which pages are active", name));
+    if (config.communicator || config.ranks_own || config.rank_timeout != 0 || config.sample)
+        refuse(format_text("{} is one process's: communicator, ranks_own, rank_timeout and sample "
+                           "are for libovercast-mpi.so, expected 0",
+                           name));
     if (config.kernel == OVC_KERNEL_COMPUTE)
         refuse(format_text("{} has no compute kernel", name));
     if (config.kernel_variant)

@@ -2,16 +2,16 @@
 """A model of ranks that share a scene out: a discrete-event simulation of a picture's rays.
 
 Each rank has a home, which sends rays off and takes their answers, a server, which traces what
-visits it in batches, and a post. Home and server want cores of the rank's node, the post its
-network. A call's rays go to their first stop in parcels; of those that come back a part goes on to
-another. What is simulated follows docs/decisions/0031; rates are measured (scale.py).
+visits it in batches, and a transport. Home and server want cores of the rank's node, the transport
+its network. A call's rays go to their first stop in messages; of those that come back a part goes
+on to another. What is simulated follows docs/decisions/0031; rates are measured (scale.py).
 """
 import dataclasses
 import heapq
 import itertools
 import math
 
-PARCEL = 1 << 15       # visits a message at most: parcels that follow each other count as one
+MESSAGE = 1 << 15       # visits a message at most: messages that follow each other count as one
 BATCH = 1 << 17        # visits a batch of the server at most, as in plugin/ranks/visit_server.cpp
 VISIT_BYTES, ANSWER_BYTES = 96, 40
 MAX_SIMULATED = 16     # ranks; of more, so many stand for all
@@ -72,7 +72,7 @@ class Simulation:
         self.waiting = [[] for _ in range(self.shown)]
         self.serving = [False] * self.shown
         self.call = [-1] * self.shown
-        self.away = [0] * self.shown  # parcels of a home that are on their way or elsewhere
+        self.away = [0] * self.shown  # messages of a home that are on their way or elsewhere
         self.ends = [0.0] * self.shown
         self.unread = job.disk_bytes / job.ranks
         mean = (job.ranks - job.imbalance) / max(job.ranks - 1, 1)
@@ -121,13 +121,13 @@ class Simulation:
                 continue
             rest = visits * self.weights[rank] / total
             while rest > 1e-9:
-                count = min(rest, PARCEL)
+                count = min(rest, MESSAGE)
                 rest -= count
                 self.away[home] += 1
                 self.send(home, rank, count, VISIT_BYTES, self.arrive)
 
     def send(self, home, other, count, size, then):
-        """A parcel between a home and another rank; then(other, home, count) when it is there."""
+        """A message between a home and another rank; then(other, home, count) when it is there."""
         machine, job = self.machine, self.job
         sender = home if then == self.arrive else other
         # One simulated rank stands for several, each of which gets a message of its own.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// One thread a post does all that MPI is needed for: it sends, receives, and listens for signs of
-// life. Ranks watch each other in a ring, so that a thousand of them send no more than two.
-#include "plugin/ranks/mpi_post.h"
+// One thread a transport does all that MPI is needed for: it sends, receives, and listens for
+// heartbeats. Ranks watch each other in a ring, so that a thousand of them send no more than two.
+#include "plugin/ranks/mpi_transport.h"
 
 #include "core/text/format_text.h"
 
@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cassert>
+#include <cstdio>
 #include <cstdlib>
 #include <list>
 #include <thread>
@@ -20,7 +21,51 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr double kDefaultTimeout = 60;
-constexpr int kParcelTag = 1, kLifeTag = 2, kLostTag = 3;
+constexpr int kMessageTag = 1, kHeartbeatTag = 2, kLostTag = 3, kEndTag = 4;
+
+/// What end_mpi() knows of the ranks of MPI_COMM_WORLD.
+struct World {
+    double timeout_seconds = kDefaultTimeout;
+    std::vector<std::string> names;
+};
+
+World& world() {
+    static World* const all = new World; // there at exit
+    return *all;
+}
+
+/// Ends MPI, which waits for all ranks and would wait for ever for one that hangs. So each waits
+/// for the one before it first, and ends the job with a sentence where that does not come.
+void end_mpi() {
+    int rank = 0, ranks = 1, here = 1, there = 0, came = 0;
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+    MPI_Comm_size(MPI_COMM_WORLD, &ranks);
+    const int before = (rank + ranks - 1) % ranks;
+    MPI_Request requests[2];
+    MPI_Isend(&here, 1, MPI_INT, (rank + 1) % ranks, kEndTag, MPI_COMM_WORLD, &requests[0]);
+    MPI_Irecv(&there, 1, MPI_INT, before, kEndTag, MPI_COMM_WORLD, &requests[1]);
+    const auto timeout = std::chrono::duration<double>(world().timeout_seconds);
+    const auto until = Clock::now() + std::chrono::duration_cast<Clock::duration>(timeout);
+    while (MPI_Testall(2, requests, &came, MPI_STATUSES_IGNORE) == MPI_SUCCESS && !came &&
+           Clock::now() < until)
+        std::this_thread::sleep_for(std::chrono::microseconds(500));
+    const auto give_up = [=](const std::string& name) {
+        const std::string sentence =
+            format_text("overcast: error: {} has given no word for {} s while the job was ending\n",
+                        name, timeout.count());
+        std::fputs(sentence.c_str(), stderr);
+        MPI_Abort(MPI_COMM_WORLD, 1);
+    };
+    if (!came)
+        give_up(size_t(before) < world().names.size() ? world().names[size_t(before)]
+                                                      : format_text("rank {}", before));
+    // It may still stop between that and the end.
+    std::thread([=] {
+        std::this_thread::sleep_for(timeout);
+        give_up("a rank");
+    }).detach();
+    MPI_Finalize();
+}
 
 /// Starts MPI where the host has not, and then ends it with the process.
 Result<Done> start_mpi() {
@@ -39,7 +84,7 @@ Result<Done> start_mpi() {
             int over = 0;
             MPI_Finalized(&over);
             if (!over)
-                MPI_Finalize();
+                end_mpi();
         });
     }
     if (threads < MPI_THREAD_MULTIPLE)
@@ -49,10 +94,10 @@ Result<Done> start_mpi() {
     return Done{};
 }
 
-class MpiPost final : public Post {
+class MpiTransport final : public Transport {
 public:
-    /// comm: of this post alone.
-    MpiPost(MPI_Comm comm, double timeout_seconds)
+    /// comm: of this transport alone.
+    MpiTransport(MPI_Comm comm, double timeout_seconds)
         : comm_(comm),
           timeout_(std::chrono::duration_cast<Clock::duration>(
               std::chrono::duration<double>(timeout_seconds))) {
@@ -62,9 +107,16 @@ public:
         rank_ = uint32_t(rank);
         ranks_ = uint32_t(ranks);
         gather_hosts();
+        int likeness = MPI_UNEQUAL;
+        MPI_Comm_compare(comm_, MPI_COMM_WORLD, &likeness);
+        if (likeness == MPI_CONGRUENT) {
+            world() = {timeout_seconds, {}};
+            for (uint32_t i = 0; i < ranks_; ++i)
+                world().names.push_back(name_of(i));
+        }
         thread_ = std::thread([this] { run(); });
     }
-    ~MpiPost() override {
+    ~MpiTransport() override {
         close();
         // With a rank gone, a call that all ranks make would not return.
         if (!lost())
@@ -91,13 +143,13 @@ public:
         wake();
         thread_.join();
     }
-    PostCounts counts() const override { return {sent_, received_}; }
+    TransportCounts counts() const override { return {sent_, received_}; }
 
 protected:
-    void send_away(uint32_t to, Parcel parcel) override {
+    void send_away(uint32_t to, Message message) override {
         {
             const std::lock_guard lock(mutex_);
-            outgoing_.push_back({to, std::move(parcel)});
+            outgoing_.push_back({to, std::move(message)});
         }
         wake();
     }
@@ -105,7 +157,7 @@ protected:
 private:
     struct Sending {
         MPI_Request request = MPI_REQUEST_NULL;
-        Parcel parcel;     // or
+        Message message;   // or
         uint32_t word = 0; // about a rank
     };
 
@@ -126,17 +178,19 @@ private:
         changed_.notify_one();
     }
 
-    /// Works until all ranks have closed their posts, or one is lost.
+    /// Works until all ranks have closed their transports, or one is lost.
     void run() {
         heard_ = Clock::now();
         MPI_Request all_closed = MPI_REQUEST_NULL;
         bool is_closing = false;
-        std::chrono::microseconds nap(20);
+        constexpr std::chrono::microseconds kMinNap(100); // a batch takes some thousands
+        std::chrono::microseconds nap = kMinNap;
+        Clock::time_point busy = heard_;
         while (true) {
             const bool was_busy = send_what_waits() | receive_all() | forget_sent();
-            give_sign_of_life();
+            send_heartbeat();
             watch_neighbour();
-            // No parcel of this rank is under way any more, for all answers have come home.
+            // No message of this rank is under way any more, for all answers have come home.
             if (closing_ && !is_closing && sending_.empty()) {
                 MPI_Ibarrier(comm_, &all_closed);
                 is_closing = true;
@@ -148,8 +202,12 @@ private:
                 if (over || lost_is_told())
                     return;
             }
-            nap = was_busy ? std::chrono::microseconds(20)
-                           : std::min(nap * 2, std::chrono::microseconds(500));
+            // Where nothing has come for a while nobody waits: heartbeats are not in a hurry.
+            const auto now = Clock::now();
+            busy = was_busy ? now : busy;
+            const std::chrono::microseconds max_nap(
+                now - busy < std::chrono::milliseconds(100) ? 800 : 5000);
+            nap = was_busy ? kMinNap : std::min(nap * 2, max_nap);
             std::unique_lock lock(mutex_);
             changed_.wait_for(lock, nap, [&] { return woken_; });
             woken_ = false;
@@ -157,20 +215,20 @@ private:
     }
 
     bool send_what_waits() {
-        std::vector<std::pair<uint32_t, Parcel>> letters;
+        std::vector<std::pair<uint32_t, Message>> messages;
         {
             const std::lock_guard lock(mutex_);
-            letters.swap(outgoing_);
+            messages.swap(outgoing_);
         }
-        for (auto& [to, parcel] : letters) {
+        for (auto& [to, message] : messages) {
             Sending& sending = sending_.emplace_back();
-            sending.parcel = std::move(parcel);
-            const auto bytes = sending.parcel.bytes();
-            MPI_Isend(bytes.data(), int(bytes.size()), MPI_BYTE, int(to), kParcelTag, comm_,
+            sending.message = std::move(message);
+            const auto bytes = sending.message.bytes();
+            MPI_Isend(bytes.data(), int(bytes.size()), MPI_BYTE, int(to), kMessageTag, comm_,
                       &sending.request);
             sent_ += bytes.size();
         }
-        return !letters.empty();
+        return !messages.empty();
     }
 
     bool forget_sent() {
@@ -192,14 +250,14 @@ private:
                 return any;
             int size = 0;
             MPI_Get_count(&status, MPI_BYTE, &size);
-            std::vector<std::byte> bytes{size_t(size)};
+            MessageBytes bytes{size_t(size)};
             MPI_Mrecv(bytes.data(), size, MPI_BYTE, &message, MPI_STATUS_IGNORE);
-            received_ += bytes.size();
+            received_ += size_t(size);
             const auto from = uint32_t(status.MPI_SOURCE);
             if (from == before())
                 heard_ = Clock::now();
-            if (status.MPI_TAG == kParcelTag) {
-                deliver(from, Parcel(std::move(bytes)));
+            if (status.MPI_TAG == kMessageTag) {
+                deliver(from, Message(std::move(bytes)));
                 any = true;
             } else if (status.MPI_TAG == kLostTag) {
                 lose(*reinterpret_cast<const uint32_t*>(bytes.data()));
@@ -210,12 +268,12 @@ private:
     uint32_t before() const { return (rank_ + ranks_ - 1) % ranks_; }
     uint32_t behind() const { return (rank_ + 1) % ranks_; }
 
-    void give_sign_of_life() {
+    void send_heartbeat() {
         const auto now = Clock::now();
-        if (ranks_ == 1 || now < next_sign_)
+        if (ranks_ == 1 || now < next_heartbeat_)
             return;
-        next_sign_ = now + std::min<Clock::duration>(timeout_ / 4, std::chrono::seconds(1));
-        send_word(behind(), kLifeTag, rank_);
+        next_heartbeat_ = now + std::min<Clock::duration>(timeout_ / 4, std::chrono::seconds(1));
+        send_word(behind(), kHeartbeatTag, rank_);
     }
 
     void watch_neighbour() {
@@ -258,18 +316,18 @@ private:
     std::atomic<uint64_t> sent_{0}, received_{0};
     mutable std::mutex mutex_; // guards the next four
     std::condition_variable changed_;
-    std::vector<std::pair<uint32_t, Parcel>> outgoing_;
+    std::vector<std::pair<uint32_t, Message>> outgoing_;
     uint32_t lost_ = kNone;
     bool woken_ = false;
     // of the thread
     std::list<Sending> sending_;
-    Clock::time_point heard_, looked_ = Clock::now(), next_sign_{};
+    Clock::time_point heard_, looked_ = Clock::now(), next_heartbeat_{};
     std::thread thread_;
 };
 
 } // namespace
 
-Result<std::unique_ptr<Post>> make_mpi_post(const MpiPostOptions& options) {
+Result<std::unique_ptr<Transport>> make_mpi_transport(const MpiTransportOptions& options) {
     if (const Result<Done> started = start_mpi(); !started)
         return started.error();
     const MPI_Comm given =
@@ -293,7 +351,7 @@ Result<std::unique_ptr<Post>> make_mpi_post(const MpiPostOptions& options) {
                      ErrorKind::InvalidArgument};
     MPI_Comm_set_errhandler(own, MPI_ERRORS_RETURN);
     const double timeout = options.timeout_seconds > 0 ? options.timeout_seconds : kDefaultTimeout;
-    return std::unique_ptr<Post>(std::make_unique<MpiPost>(own, timeout));
+    return std::unique_ptr<Transport>(std::make_unique<MpiTransport>(own, timeout));
 }
 
 void abort_all_ranks(int code) {

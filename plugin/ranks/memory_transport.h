@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+// MemoryTransport: the transport between ranks that are objects of one process, for tests. Messages
+// arrive late, and in another order than MPI would have them, except between the same two ranks.
+#pragma once
+
+#include "plugin/ranks/transport.h"
+
+#include <atomic>
+#include <memory>
+#include <random>
+#include <thread>
+#include <vector>
+
+namespace ovc::test {
+
+class MemoryTransport final : public Transport {
+public:
+    /// What all ranks share.
+    struct Network {
+        std::vector<MemoryTransport*> transports;
+        std::atomic<size_t> closed{0};
+        std::atomic<uint32_t> lost{kNone};
+    };
+
+    static std::vector<std::unique_ptr<MemoryTransport>> make(uint32_t ranks) {
+        const auto network = std::make_shared<Network>();
+        std::vector<std::unique_ptr<MemoryTransport>> transports;
+        for (uint32_t rank = 0; rank < ranks; ++rank) {
+            transports.push_back(
+                std::unique_ptr<MemoryTransport>(new MemoryTransport(network, rank, ranks)));
+            network->transports.push_back(transports.back().get());
+        }
+        return transports;
+    }
+    ~MemoryTransport() override { close(); }
+
+    uint32_t rank() const override { return rank_; }
+    uint32_t ranks() const override { return ranks_; }
+    std::string name_of(uint32_t rank) const override {
+        return "rank " + std::to_string(rank) + " on here";
+    }
+    std::optional<Error> lost() const override {
+        if (network_->lost == kNone)
+            return std::nullopt;
+        return Error{name_of(network_->lost) + " is lost"};
+    }
+    void close() override {
+        if (!thread_.joinable())
+            return;
+        ++network_->closed;
+        while (network_->closed < ranks_ && !lost())
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        thread_.request_stop();
+        thread_.join();
+    }
+    TransportCounts counts() const override { return {sent_, 0}; }
+
+    void lose(uint32_t rank) { network_->lost = rank; }
+
+protected:
+    void send_away(uint32_t to, Message message) override {
+        sent_ += message.bytes().size();
+        network_->transports[to]->waiting_.put(rank_, std::move(message));
+    }
+
+private:
+    MemoryTransport(std::shared_ptr<Network> network, uint32_t rank, uint32_t ranks)
+        : network_(std::move(network)), rank_(rank), ranks_(ranks) {
+        thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
+    }
+
+    void run(const std::stop_token& stop) {
+        std::mt19937 random(rank_);
+        while (!stop.stop_requested())
+            for (Received& received : waiting_.take(std::chrono::milliseconds(2))) {
+                std::this_thread::sleep_for(std::chrono::microseconds(random() % 300));
+                deliver(received.from, std::move(received.message));
+            }
+    }
+
+    const std::shared_ptr<Network> network_;
+    const uint32_t rank_, ranks_;
+    MessageQueue waiting_; // that have arrived, but nobody knows yet
+    std::atomic<uint64_t> sent_{0};
+    std::jthread thread_;
+};
+
+} // namespace ovc::test
