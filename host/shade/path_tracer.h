@@ -43,6 +43,7 @@ private:
     struct Sides;
     void meet(const Ray& ray, const Path& path, const Hit& hit, Film& film, Sides& sides,
               Spawned& spawned) const;
+    vec3 seen_sky(const Ray& ray, const Path& path) const;
     vec3 seen_emission(const Met& met) const;
     void light_up(const Met& met, double choice, const dvec2& u, Film& film,
                   Spawned& spawned) const;

@@ -5,6 +5,7 @@
 
 #include "core/ray.h"
 #include "core/scene.h"
+#include "host/shade/cone.h"
 
 #include <cstdint>
 #include <optional>
@@ -23,12 +24,21 @@ struct SurfacePoint {
     dvec3 view;             // the ray's direction, of unit length
     const Material* material;
     vec3 color;        // the material's color here
+    float gloss = 1;   // multiplies mirror images and highlights
     float opacity = 1; // multiplies ambient and diffuse light; 1 where the finish is dimmed already
     vec3 through{0};   // with a finish: the share of light that goes through here, for each color
-    bool entering;     // the ray came from outside, from where the corners run counterclockwise
+    std::optional<Optics> optics; // the material's here, where they differ from place to place
+    bool entering; // the ray came from outside, from where the corners run counterclockwise
     /// The parts of a material that is layered or mixed; else empty. `color` is then their mean.
     std::vector<Coat> coats;
 };
+
+/// Returns the optics of the point's material there; null: it has none.
+inline const Optics* optics_of(const SurfacePoint& surface) {
+    return surface.optics             ? &*surface.optics
+           : surface.material->optics ? &*surface.material->optics
+                                      : nullptr;
+}
 
 /// The same point with one material, and the share of it that is seen, for each color.
 struct Coat {
@@ -40,7 +50,9 @@ struct Coat {
 /// than float can tell but more than double errs, so that a second triangle in the same place is
 /// neither a shadow nor a second surface. Near an edge they are also moved into the triangle, since
 /// its neighbour may bend towards either side. Spawned rays skip the triangle itself by its id.
-SurfacePoint surface_point(const Scene& scene, const Ray& ray, const Hit& hit);
+/// cone: of the ray; without one, textures are seen at a point.
+SurfacePoint surface_point(const Scene& scene, const Ray& ray, const Hit& hit,
+                           const Cone& cone = {});
 
 /// Returns the color that a ray in direction `dir` sees where it hits nothing. up: unit length.
 vec3 background_color(const Scene& scene, const vec3& up, const dvec3& dir);
