@@ -150,9 +150,9 @@ vec3 ambient_light(const Background& background, const vec3& up, const SurfacePo
     const vec3 ground = kGround * background.horizon;
     const vec3 sky = 0.5f * (background.horizon + background.zenith);
     const float openness = 0.5f + 0.5f * float(glm::dot(surface.normal, dvec3(up)));
-    const Optics* const optics = optics_of(surface);
+    const std::optional<Optics>& optics = surface.material->optics;
     return surface.color * (kAmbient + kSkyShare * glm::mix(ground, sky, openness)) +
-           (optics ? optics->emission : vec3(0));
+           (optics ? surface.maps.emission * optics->emission : vec3(0));
 }
 
 /// Returns the vector from the position to the light, at its full length.
@@ -209,7 +209,7 @@ Branches branches(const SurfacePoint& surface, bool total) {
     const Material& material = *surface.material;
     if (material.finish)
         return finish_branches(surface, total);
-    const float mirror = surface.gloss * material.mirror;
+    const float mirror = surface.maps.gloss() * material.mirror;
     const float through = std::min(material.transmission, 1 - material.mirror);
     if (total)
         return {vec3(mirror + through), vec3(0), mirror + through, 0};

@@ -15,6 +15,17 @@ namespace ovc {
 
 struct Coat;
 
+/// The values of a material's maps at a point: factors of the parts that they are for.
+struct MapValues {
+    vec3 reflection{1};
+    vec3 emission{1};
+    float width = 1;
+    float metal = -1; // the share of metal; below 0: there is no such map
+
+    /// Returns the factor of mirror images and highlights.
+    float gloss() const { return (reflection.x + reflection.y + reflection.z) / 3; }
+};
+
 /// A point on a surface as a ray saw it: both normals face the ray and are of unit length.
 struct SurfacePoint {
     dvec3 position;         // just on the ray's side of the triangle
@@ -24,21 +35,16 @@ struct SurfacePoint {
     dvec3 view;             // the ray's direction, of unit length
     const Material* material;
     vec3 color;        // the material's color here
-    float gloss = 1;   // multiplies mirror images and highlights
     float opacity = 1; // multiplies ambient and diffuse light; 1 where the finish is dimmed already
     vec3 through{0};   // with a finish: the share of light that goes through here, for each color
-    std::optional<Optics> optics; // the material's here, where they differ from place to place
+    MapValues maps;
     bool entering; // the ray came from outside, from where the corners run counterclockwise
     /// The parts of a material that is layered or mixed; else empty. `color` is then their mean.
     std::vector<Coat> coats;
 };
 
-/// Returns the optics of the point's material there; null: it has none.
-inline const Optics* optics_of(const SurfacePoint& surface) {
-    return surface.optics             ? &*surface.optics
-           : surface.material->optics ? &*surface.material->optics
-                                      : nullptr;
-}
+/// Returns the optics of the point's material, which has some, there.
+Optics optics_at(const SurfacePoint& surface);
 
 /// The same point with one material, and the share of it that is seen, for each color.
 struct Coat {

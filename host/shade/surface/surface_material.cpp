@@ -19,34 +19,38 @@ static void tilt_by_map(const Scene& scene, const NormalMap& map, const TextureP
         surface.normal = normal;
 }
 
-static float mean_of(const vec3& color) {
-    return (color.x + color.y + color.z) / 3;
+static void take_maps(const Scene& scene, const MaterialMaps& maps, const TexturePoint& point,
+                      MapValues& values) {
+    const auto color = [&](uint32_t map) {
+        return map == kNone ? vec3(1) : glm::max(color_at(scene.textures, map, point).rgb, vec3(0));
+    };
+    const auto mean = [&](uint32_t map) {
+        const vec3 c = color(map);
+        return (c.x + c.y + c.z) / 3;
+    };
+    values.reflection = color(maps.reflection);
+    values.emission = color(maps.emission);
+    values.width = mean(maps.width);
+    if (maps.metallic != kNone)
+        values.metal = std::min(mean(maps.metallic), 1.0f);
 }
 
 /// The share that a surface reflects head on where it is no metal: that of an index of 1.5.
 static constexpr float kPlainReflection = 0.04f;
 
-static void take_maps(const Scene& scene, const MaterialMaps& maps, const TexturePoint& point,
-                      SurfacePoint& surface) {
-    const auto color = [&](uint32_t map) {
-        return map == kNone ? vec3(1) : glm::max(color_at(scene.textures, map, point).rgb, vec3(0));
-    };
-    const vec3 reflection = color(maps.reflection);
-    surface.gloss = mean_of(reflection);
-    if (!surface.material->optics)
-        return;
-    Optics& optics = surface.optics.emplace(*surface.material->optics);
+Optics optics_at(const SurfacePoint& surface) {
+    Optics optics = *surface.material->optics;
     if (surface.material->texture)
         optics.diffuse = surface.color;
-    if (maps.metallic != kNone) {
-        const float metal = std::clamp(mean_of(color(maps.metallic)), 0.0f, 1.0f);
+    if (const float metal = surface.maps.metal; metal >= 0) {
         optics.boundary = Optics::Boundary::Metal;
         optics.reflection = glm::mix(vec3(kPlainReflection), surface.color, metal);
         optics.diffuse = (1 - metal) * surface.color;
     }
-    optics.reflection *= reflection;
-    optics.width *= mean_of(color(maps.width));
-    optics.emission *= color(maps.emission);
+    optics.reflection *= surface.maps.reflection;
+    optics.width *= surface.maps.width;
+    optics.emission *= surface.maps.emission;
+    return optics;
 }
 
 static void take_color(const Scene& scene, const Material& material, const TexturePoint& point,
@@ -68,11 +72,7 @@ static void take_color(const Scene& scene, const Material& material, const Textu
     } else if (material.finish)
         surface.through = material.transmission * material.filter;
     if (material.maps)
-        take_maps(scene, *material.maps, point, surface);
-    else if (material.texture && material.optics) {
-        surface.optics = *material.optics;
-        surface.optics->diffuse = surface.color;
-    }
+        take_maps(scene, *material.maps, point, surface.maps);
 }
 
 static vec3 add_mix(const Scene& scene, const PlacedTexture& placed, const TexturePoint& point,

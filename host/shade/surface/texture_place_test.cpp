@@ -112,16 +112,15 @@ TEST(TexturePlace, MapsChangeWhatTheyName) {
     scene.materials[0].maps = MaterialMaps{.reflection = 1, .width = 1, .emission = 0};
     const Look look = look_from({0, 0, 1}, 5);
     SurfacePoint surface = surface_point(scene, look.ray, look.hit);
-    ASSERT_TRUE(surface.optics);
-    EXPECT_EQ(surface.gloss, 0.25f);
-    EXPECT_EQ(surface.optics->reflection, vec3(0.25f));
-    EXPECT_EQ(surface.optics->width, 0.125f);
-    EXPECT_EQ(surface.optics->emission, vec3(1, 1, 0));
+    EXPECT_EQ(surface.maps.gloss(), 0.25f);
+    EXPECT_EQ(optics_at(surface).reflection, vec3(0.25f));
+    EXPECT_EQ(optics_at(surface).width, 0.125f);
+    EXPECT_EQ(optics_at(surface).emission, vec3(1, 1, 0));
     scene.materials[0].maps = MaterialMaps{.metallic = 1};
     surface = surface_point(scene, look.ray, look.hit);
     const vec3 base(0.25f, 0.5f, 0.5f);
-    EXPECT_EQ(surface.optics->diffuse, 0.75f * base);
-    EXPECT_LT(glm::length(surface.optics->reflection - (0.03f + 0.25f * base)), 1e-6f);
+    EXPECT_EQ(optics_at(surface).diffuse, 0.75f * base);
+    EXPECT_LT(glm::length(optics_at(surface).reflection - (0.03f + 0.25f * base)), 1e-6f);
 }
 
 TEST(TexturePlace, ANormalMapTiltsBothSidesAlike) {
