@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Renders textured squares of each format, and compares the colors of their pixels with those of the
-picture that lies on them. A white square in the same light tells how much of a color arrives.
+"""Renders textured squares of each format, and compares their pixels with the picture on them. A
+plain square in the same light tells how much of a color arrives.
 
 usage: textures.py OVERCAST
 """
@@ -105,8 +105,8 @@ class Textures(unittest.TestCase):
                backend="cpu-kdtree"):
         """Returns the picture's pixels in linear light, and what was said."""
         out = self.folder / "out.png"
-        done = subprocess.run([overcast, "render", scene, "-o", out, "--backend", backend, *VIEW, *camera,
-                               *more], capture_output=True, text=True, timeout=300)
+        done = subprocess.run([overcast, "render", scene, "-o", out, "--backend", backend, *VIEW,
+                               *camera, *more], capture_output=True, text=True, timeout=300)
         self.assertEqual(done.returncode, wanted, done.stderr)
         if wanted:
             return None, done.stderr
@@ -191,7 +191,8 @@ class Textures(unittest.TestCase):
         write_rgba(self.folder / "four.png", 16, 16, masked)
         mask = dict(FOUR[gltf], alphaMode="MASK", alphaCutoff=0.5)
         cases = {"gltf": (gltf(mask, self.folder, "mask"), [True, False, False, True]),
-                 "obj": (obj("Kd 0.5 0.5 0.5\nmap_d four.png", self.folder, "holes"), [True, False])}
+                 "obj": (obj("Kd 0.5 0.5 0.5\nmap_d four.png", self.folder, "holes"),
+                         [True, False])}
         for name, (scene, there) in cases.items():
             with self.subTest(name):
                 pixels, _ = self.render(scene)

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Which textures and materials of a scene lie on texture coordinates.
 #include "core/scene.h"
 
 namespace ovc {

@@ -5,8 +5,8 @@
 
 #include "core/ray.h"
 #include "core/scene.h"
+#include "host/shade/lights/sky_sampler.h"
 #include "host/shade/shade.h"
-#include "host/shade/sky_sampler.h"
 
 #include <optional>
 #include <vector>

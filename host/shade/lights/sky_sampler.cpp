@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Based on: Pharr, Jakob and Humphreys, "Physically Based Rendering", third edition, section
 // 14.2.4: a table of luminance by longitude and latitude, inverted row by row.
-#include "host/shade/sky_sampler.h"
+#include "host/shade/lights/sky_sampler.h"
 
 #include "core/system/parallel.h"
 #include "host/shade/shade.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Lights are chosen by their power, with a binary search in the running sums of their chances.
-#include "host/shade/light_sampler.h"
+#include "host/shade/lights/light_sampler.h"
 
 #include <algorithm>
 #include <cassert>

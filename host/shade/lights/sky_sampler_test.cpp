@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/shade/sky_sampler.h"
+#include "host/shade/lights/sky_sampler.h"
 
-#include "host/shade/light_sampler.h"
+#include "host/shade/lights/light_sampler.h"
 #include "host/shade/shade.h"
 
 #include <gtest/gtest.h>
