@@ -10,6 +10,12 @@ if(TARGET overcast_mpi)
     install(TARGETS overcast_mpi
         LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/overcast COMPONENT local)
 endif()
+# The reader of pictures, where there is OpenImageIO. Only an installation by hand has it, since a
+# package would ask for its hundred packages.
+if(TARGET overcast_textures)
+    install(TARGETS overcast_textures
+        LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/overcast COMPONENT local)
+endif()
 # tachyon with Overcast in it, where it is built. Only overcast-tachyon preloads the module.
 if(TARGET overcast_tachyon)
     install(TARGETS overcast-tachyon RUNTIME COMPONENT overcast)

@@ -3,7 +3,7 @@
 // of their own.
 #pragma once
 
-#include "core/vec.h"
+#include "core/texture/texture.h"
 
 #include <cstdint>
 #include <vector>
@@ -27,6 +27,10 @@ struct Cutout {
     /// Between 0 and 1 a hit counts with that probability, which a hash of the hit decides. If
     /// false, it counts.
     bool partial = true;
+    /// The opacity is the mean color of this texture instead, an index into Scene::textures;
+    /// kNoTexture: it is that of the picture above.
+    uint32_t texture = kNoTexture;
+    float threshold = 0; // an opacity below this counts as 0, and from here on as 1; 0: as it is
 
     bool operator==(const Cutout&) const = default;
 };

@@ -8,6 +8,7 @@
 #include "core/file/scene_on_disk.h"
 #include "core/soup.h"
 #include "core/texture/bump.h"
+#include "core/texture/normal_map.h"
 
 #include <algorithm>
 #include <array>
@@ -15,6 +16,7 @@
 #include <cmath>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -67,6 +69,19 @@ struct Optics {
     bool operator==(const Optics&) const = default;
 };
 
+/// Textures over parts of a material besides its color, as indices into Scene::textures; kNone: the
+/// part is the same everywhere. They are evaluated at points of the world.
+struct MaterialMaps {
+    uint32_t reflection = kNone; // multiplies Optics::reflection, and mirror images and highlights
+    uint32_t width = kNone;      // multiplies Optics::width
+    uint32_t emission = kNone;   // multiplies Optics::emission
+    /// The share of metal. The boundary then reflects, head on, 0.04 and of metal the color, and
+    /// only the rest scatters: glTF's model.
+    uint32_t metallic = kNone;
+
+    bool operator==(const MaterialMaps&) const = default;
+};
+
 /// A surface of Whitted's model, linear RGB in [0, 1]. Of the light that it sends on, it reflects
 /// the share `mirror` as a mirror does and lets the share `transmission` through, tinted by
 /// `filter` at every crossing; the rest, at least 0, is the surface's own color.
@@ -89,6 +104,8 @@ struct Material {
     /// 0 where no color of the texture lets light through.
     std::optional<PlacedTexture> texture;
     std::optional<Bump> bump; // tilts the normals
+    std::optional<NormalMap> normal_map;
+    std::optional<MaterialMaps> maps;
     /// The material below, an index into Scene::materials. It is seen in the light that this one
     /// lets through. Its own layers follow; kNone: there is none.
     uint32_t under = kNone;
@@ -127,14 +144,14 @@ struct MeshInfo {
     /// kNone: it has no holes.
     uint32_t cutout = kNone;
     uint32_t shadow_cutout = kNone;
-    /// 3 per triangle for a mesh with a cutout, or those of another mesh; else empty.
+    /// 3 per triangle for a mesh that has a use for them, or those of another mesh; else empty.
     std::vector<vec2> uv;
     uint32_t uv_from = kNone;
     /// Where normals and texture coordinates lie on a disk instead (Scene::on_disk); or null.
     const StoredValues* stored_normals = nullptr;
     const StoredValues* stored_uv = nullptr;
     /// Counts the corners that have these in the file and not here: normals that cannot be used or
-    /// say nothing new, and texture coordinates, which cutouts alone have a use for.
+    /// say nothing new, and texture coordinates that neither a cutout nor a texture has a use for.
     uint64_t normals_left_out = 0;
     uint64_t texture_coordinates_left_out = 0;
 };
@@ -235,6 +252,15 @@ inline float linear_light(float color, double gamma) {
                              : std::pow((color + 0.055f) / 1.055f, 2.4f); // IEC 61966-2-1
 }
 
+/// A file that a texture shows.
+struct PictureFile {
+    std::string file;
+    std::string asked_for_at;      // the place that names it, "a.pbrt:12:3"; or empty
+    std::vector<uint8_t> contents; // of a picture that lies in another file; else empty
+
+    bool operator==(const PictureFile&) const = default;
+};
+
 /// The size of a scene before its instances were expanded.
 struct Instancing {
     uint64_t unique_triangles = 0;
@@ -255,6 +281,7 @@ struct Scene {
     std::vector<MeshInfo> meshes;
     std::vector<Material> materials;
     std::vector<Texture> textures; // a texture's stops name textures before it
+    std::vector<PictureFile> pictures;
     std::vector<Cutout> cutouts;
     std::vector<Light> lights;
     bool moves = false;                // something in it goes by the Moment
@@ -302,5 +329,13 @@ struct Scene {
         return uint32_t(meshes.size() - 1);
     }
 };
+
+/// Returns for each texture whether it has a part that lies on texture coordinates. mixes: for each
+/// texture whether its stops are materials.
+std::vector<bool> textures_on_uv(std::span<const Texture> textures, const std::vector<bool>& mixes);
+
+/// Returns for each material whether it has a use for texture coordinates. Its textures must be
+/// sound.
+std::vector<bool> materials_on_uv(const Scene& scene);
 
 } // namespace ovc

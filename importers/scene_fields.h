@@ -49,8 +49,26 @@ void each_field(auto& io, Some<TextureStop> auto& s) {
     io(s.at, s.color, s.texture);
 }
 
+/// An image is saved without its lookup: it is opened anew.
+void each_field(auto& io, Some<ImageTexture> auto& i) {
+    io(i.picture, i.projection, i.to_picture, i.beyond_s, i.beyond_t, i.filter, i.gamma, i.channel,
+       i.is_transparent, i.filter_all, i.transmit_all, i.scale, i.offset, i.otherwise);
+}
+
 void each_field(auto& io, Some<Texture> auto& t) {
-    io(t.pattern, t.stops);
+    io(t.kind, t.on_uv, t.pattern, t.stops, t.image);
+}
+
+void each_field(auto& io, Some<NormalMap> auto& m) {
+    io(m.kind, m.texture, m.scale);
+}
+
+void each_field(auto& io, Some<MaterialMaps> auto& m) {
+    io(m.reflection, m.width, m.emission, m.metallic);
+}
+
+void each_field(auto& io, Some<PictureFile> auto& p) {
+    io(p.file, p.asked_for_at, p.contents);
 }
 
 void each_field(auto& io, Some<Optics> auto& o) {
@@ -59,12 +77,12 @@ void each_field(auto& io, Some<Optics> auto& o) {
 
 void each_field(auto& io, Some<Material> auto& m) {
     io(m.name, m.color, m.mirror, m.transmission, m.filter, m.ior, m.finish, m.optics, m.texture,
-       m.bump, m.under, m.mix);
+       m.bump, m.normal_map, m.maps, m.under, m.mix);
 }
 
 void each_field(auto& io, Some<Cutout> auto& c) {
     io(c.width, c.height, c.opacity, c.scale, c.uv_scale, c.uv_offset, c.beyond, c.smooth,
-       c.partial);
+       c.partial, c.texture, c.threshold);
 }
 
 void each_field(auto& io, Some<SpotCone> auto& c) {
@@ -109,8 +127,8 @@ void each_field(auto& io, Some<MeshInfo> auto& m) {
 
 /// Passes all fields except meshes, soup, and what the file's other parts hold.
 void each_field(auto& io, Some<Scene> auto& s) {
-    io(s.name, s.materials, s.textures, s.cutouts, s.lights, s.may_add_light, s.camera, s.size,
-       s.max_depth, s.background, s.exposure, s.gamma, s.omissions, s.instancing);
+    io(s.name, s.materials, s.textures, s.pictures, s.cutouts, s.lights, s.may_add_light, s.camera,
+       s.size, s.max_depth, s.background, s.exposure, s.gamma, s.omissions, s.instancing);
 }
 
 void each_field(auto& io, Some<FileStamp> auto& f) {

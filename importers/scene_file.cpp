@@ -28,7 +28,7 @@ namespace {
 constexpr std::string_view kKind = "ovc scene";
 /// Raise it with every change of scene_fields.h, and when an importer makes another scene of the
 /// same file.
-constexpr uint32_t kVersion = 9;
+constexpr uint32_t kVersion = 10;
 
 /// The checksums of the blocks (core/file/file_blocks.h) of corners, normals and texture
 /// coordinates.
@@ -152,7 +152,8 @@ bool is_sound(const Scene& scene) {
     if (!has_sound_textures(scene))
         return false;
     for (const Cutout& cutout : scene.cutouts)
-        if (cutout.opacity.empty() || cutout.beyond > Cutout::Beyond::Hole ||
+        if (cutout.beyond > Cutout::Beyond::Hole ||
+            (cutout.opacity.empty() && cutout.texture == kNoTexture) ||
             cutout.opacity.size() != uint64_t(cutout.width) * cutout.height)
             return false;
     using Bend = ImageWindow::Bend;

@@ -48,6 +48,8 @@ TEST(SceneFile, GivesBackEveryField) {
     expect_same(scene, file->scene);
     EXPECT_EQ(file->scene.materials, scene.materials);
     EXPECT_EQ(file->scene.cutouts, scene.cutouts);
+    EXPECT_EQ(file->scene.textures, scene.textures);
+    EXPECT_EQ(file->scene.pictures, scene.pictures);
     EXPECT_EQ(file->scene.camera->window->bend, ImageWindow::Bend::Omnimax);
     EXPECT_EQ(file->from.request, "asked");
     EXPECT_EQ(file->from.files, from.files);
@@ -164,22 +166,26 @@ TEST(SceneFile, EveryFieldOfAStructIsNamed) {
     EXPECT_EQ(size(TextureStop{}), sizeof(TextureStop));
     EXPECT_EQ(size(PlacedTexture{}), sizeof(PlacedTexture) - 4);
     EXPECT_EQ(size(Background{}), 24 + 8u);
-    EXPECT_EQ(size(Material{}), 8 + 12 + 4 + 4 + 12 + 8 + 1 + 1 + 1 + 1 + 4 + 1u);
+    EXPECT_EQ(size(Material{}), 8 + 12 + 4 + 4 + 12 + 8 + 1 + 1 + 1 + 1 + 1 + 1 + 4 + 1u);
+    EXPECT_EQ(size(ImageTexture{}), sizeof(ImageTexture) - 4 - 3 - sizeof(ImageTexture::lookup));
+    EXPECT_EQ(size(NormalMap{}), sizeof(NormalMap) - 4);
+    EXPECT_EQ(size(MaterialMaps{}), sizeof(MaterialMaps));
+    EXPECT_EQ(size(PictureFile{}), 8 + 8 + 8u);
     EXPECT_EQ(size(Bump{}), sizeof(Bump) - 4);
     EXPECT_EQ(size(SpotCone{}), sizeof(SpotCone));
     EXPECT_EQ(size(Optics{}), 3 * 12 + 1 + 8 + 4 + 12 + 1u);
     EXPECT_EQ(size(Light{}), 24 + 12 + 1 + 24 + 1 + 1 + 1 + 8 + 8 + 1u);
     EXPECT_EQ(size(ImageWindow{}), 3 * 24 + 1 + 4 + 8 + 8u);
     EXPECT_EQ(size(Camera{}), 3 * 24 + 8 + 1u);
-    EXPECT_EQ(size(Cutout{}), 4 + 4 + 8 + 4 + 16 + 16 + 1 + 1 + 1u);
+    EXPECT_EQ(size(Cutout{}), 4 + 4 + 8 + 4 + 16 + 16 + 1 + 1 + 1 + 4 + 4u);
     EXPECT_EQ(size(MeshInfo{}), 8 + 4 + 4 + 72 + 3 * 4 + 8 + 8u); // stored_… are of one process
     EXPECT_EQ(sizeof(Finish), 80u) << "a field more: name it in scene_fields.h, and here";
     EXPECT_EQ(sizeof(Optics), 72u) << "a field more: name it in scene_fields.h, and here";
-    EXPECT_EQ(sizeof(Material), 608u) << "a field more: name it in scene_fields.h, and here";
+    EXPECT_EQ(sizeof(Material), 656u) << "a field more: name it in scene_fields.h, and here";
     EXPECT_EQ(sizeof(Light), 128u) << "a field more: name it in scene_fields.h, and here";
     EXPECT_EQ(sizeof(ImageWindow), 96u) << "a field more: name it in scene_fields.h, and here";
     EXPECT_EQ(sizeof(Camera), 184u) << "a field more: name it in scene_fields.h, and here";
-    EXPECT_EQ(sizeof(Cutout), 80u) << "a field more: name it in scene_fields.h, and here";
+    EXPECT_EQ(sizeof(Cutout), 88u) << "a field more: name it in scene_fields.h, and here";
     EXPECT_EQ(sizeof(MeshInfo), 216u) << "a field more: name it in scene_fields.h, and here";
 }
 

@@ -7,8 +7,8 @@
 namespace ovc {
 
 /// Returns whether each chunk has its mesh, each mesh has a material that exists, its normals
-/// come from itself or an earlier mesh and are none or one per corner, and a mesh with a cutout,
-/// which exists, has texture coordinates of the same kind.
+/// come from itself or an earlier mesh and are none or one per corner, as do its texture
+/// coordinates, which a mesh with a cutout has.
 inline bool has_sound_meshes(const Scene& scene) {
     if (scene.meshes.size() != scene.soup.chunks.size())
         return false;
@@ -22,9 +22,11 @@ inline bool has_sound_meshes(const Scene& scene) {
         const size_t normals = scene.normals_of(mesh).size();
         if (normals != 0 && normals != corners)
             return false;
+        const size_t uv = scene.uv_of(mesh).size();
+        if (uv != 0 && uv != corners)
+            return false;
         for (const uint32_t cutout : {mesh.cutout, mesh.shadow_cutout})
-            if (cutout != kNone &&
-                (cutout >= scene.cutouts.size() || scene.uv_of(mesh).size() != corners))
+            if (cutout != kNone && (cutout >= scene.cutouts.size() || uv != corners))
                 return false;
     }
     return true;

@@ -13,15 +13,15 @@ namespace {
 
 /// Returns -0.1 times four thirds of the pattern's gradient, about. The corners of a tetrahedron of
 /// size `accuracy` are where the pattern is looked at.
-dvec3 against_slope(const Pattern& pattern, double accuracy, const dvec3& at) {
+dvec3 against_slope(std::span<const Texture> textures, const Bump& bump, const dvec3& at) {
     static const dvec3 kCorners[] = {{2 * std::sqrt(2.0) / 3, -1 / 3.0, 0},
                                      {-std::sqrt(2.0) / 3, -1 / 3.0, std::sqrt(2 / 3.0)},
                                      {-std::sqrt(2.0) / 3, -1 / 3.0, -std::sqrt(2 / 3.0)},
                                      {0, 1, 0}};
     dvec3 sum(0);
     for (const dvec3& corner : kCorners)
-        sum -= evaluate(pattern, at + accuracy * corner).value * corner;
-    return 0.1 / accuracy * sum;
+        sum -= value_at(textures, bump.pattern.texture, {at + bump.accuracy * corner}) * corner;
+    return 0.1 / bump.accuracy * sum;
 }
 
 dvec3 wrinkled(const dvec3& at) {
@@ -32,9 +32,10 @@ dvec3 wrinkled(const dvec3& at) {
     return sum;
 }
 
-dvec3 tilt(const Pattern& pattern, const Bump& bump, const dvec3& at) {
+dvec3 tilt(std::span<const Texture> textures, const Bump& bump, const dvec3& at) {
     if (bump.kind == Bump::Kind::Height)
-        return against_slope(pattern, bump.accuracy, at);
+        return against_slope(textures, bump, at);
+    const Pattern& pattern = textures[bump.pattern.texture].pattern;
     const dvec3 where = evaluate(pattern, at).at;
     switch (bump.kind) {
     case Bump::Kind::Dents:
@@ -58,8 +59,7 @@ dvec3 bumped(std::span<const Texture> textures, const Bump& bump, const dvec3& a
     const double length = glm::length(there);
     if (!(length > 0) || !std::isfinite(length))
         return normal;
-    const dvec3 tilted =
-        there / length + bump.amount * tilt(textures[placed.texture].pattern, bump, placed.at(at));
+    const dvec3 tilted = there / length + bump.amount * tilt(textures, bump, placed.at(at));
     const dvec3 back = rows * tilted;
     const double size = glm::length(back);
     return size > 0 && std::isfinite(size) ? back / size : normal;

@@ -243,8 +243,8 @@ bool adds_turbulence(Kind kind) {
 }
 
 TransparentColor color_of_stop(std::span<const Texture> textures, const TextureStop& stop,
-                               const dvec3& at) {
-    return stop.texture == kNoTexture ? stop.color : color_at(textures, stop.texture, at);
+                               const TexturePoint& point) {
+    return stop.texture == kNoTexture ? stop.color : color_at(textures, stop.texture, point);
 }
 
 void add(TransparentColor& sum, const TransparentColor& color, float share) {
@@ -268,28 +268,103 @@ PatternPlace evaluate(const Pattern& pattern, const dvec3& at) {
     return place;
 }
 
-TransparentColor color_at(std::span<const Texture> textures, uint32_t number, const dvec3& at) {
-    assert(number < textures.size() && !textures[number].stops.empty());
-    const Texture& texture = textures[number];
-    const PatternPlace place = evaluate(texture.pattern, at);
+namespace {
+
+float mean_of(const TransparentColor& color) {
+    return (color.rgb.x + color.rgb.y + color.rgb.z) / 3;
+}
+
+TransparentColor color_of_pattern(std::span<const Texture> textures, const Texture& texture,
+                                  TexturePoint point) {
+    const PatternPlace place = evaluate(texture.pattern, point.at);
+    point.at = place.at;
     TransparentColor sum;
     if (texture.pattern.kind == Kind::Average) {
         double weights = 0;
         for (const TextureStop& stop : texture.stops)
             weights += stop.at;
         for (const TextureStop& stop : texture.stops)
-            add(sum, color_of_stop(textures, stop, place.at),
+            add(sum, color_of_stop(textures, stop, point),
                 float(weights > 0 ? stop.at / weights : 1.0 / double(texture.stops.size())));
         return sum;
     }
     const Between where = between(
         texture.stops.size(), [&](size_t i) { return texture.stops[i].at; }, place.value,
         is_discrete(texture.pattern.kind));
-    add(sum, color_of_stop(textures, texture.stops[where.first], place.at), float(1 - where.share));
+    add(sum, color_of_stop(textures, texture.stops[where.first], point), float(1 - where.share));
     if (where.share > 0)
-        add(sum, color_of_stop(textures, texture.stops[where.second], place.at),
-            float(where.share));
+        add(sum, color_of_stop(textures, texture.stops[where.second], point), float(where.share));
     return sum;
+}
+
+TransparentColor product(std::span<const Texture> textures, const Texture& texture,
+                         const TexturePoint& point) {
+    TransparentColor all{vec3(1)};
+    for (const TextureStop& stop : texture.stops) {
+        const TransparentColor one = color_of_stop(textures, stop, point);
+        all.rgb *= one.rgb;
+        all.transmit = 1 - (1 - all.transmit) * (1 - one.transmit);
+    }
+    return all;
+}
+
+TransparentColor mix(std::span<const Texture> textures, const Texture& texture,
+                     const TexturePoint& point) {
+    const float share =
+        std::clamp(mean_of(color_of_stop(textures, texture.stops[2], point)), 0.0f, 1.0f);
+    TransparentColor sum;
+    add(sum, color_of_stop(textures, texture.stops[0], point), 1 - share);
+    add(sum, color_of_stop(textures, texture.stops[1], point), share);
+    return sum;
+}
+
+TransparentColor color_of_image(const Texture& texture, TexturePoint point) {
+    const auto turned = [](const TextureStep& step, const dvec3& v) {
+        return dvec3(glm::dot(dvec3(step.rows[0]), v), glm::dot(dvec3(step.rows[1]), v),
+                     glm::dot(dvec3(step.rows[2]), v));
+    };
+    for (const TextureStep& step : texture.pattern.steps) {
+        point.at = moved(point.at, step);
+        if (step.kind == TextureStep::Kind::Affine)
+            point.sides = {turned(step, point.sides[0]), turned(step, point.sides[1])};
+    }
+    return color_at(*texture.image, point.at, point.sides);
+}
+
+/// Moves the point to where the texture is evaluated.
+TexturePoint moved_to_uv(const TexturePoint& point) {
+    TexturePoint there = point;
+    there.at = dvec3(point.uv, 0);
+    there.sides = {dvec3(point.uv_sides[0], 0), dvec3(point.uv_sides[1], 0)};
+    return there;
+}
+
+} // namespace
+
+TransparentColor color_at(std::span<const Texture> textures, uint32_t number,
+                          const TexturePoint& point) {
+    assert(number < textures.size());
+    const Texture& texture = textures[number];
+    if (texture.on_uv && !point.has_uv)
+        return texture.image ? texture.image->otherwise : TransparentColor{vec3(0.5f)};
+    switch (texture.kind) {
+    case TextureKind::Image:
+        return color_of_image(texture, texture.on_uv ? moved_to_uv(point) : point);
+    case TextureKind::Product:
+        return product(textures, texture, point);
+    case TextureKind::Mix:
+        return mix(textures, texture, point);
+    case TextureKind::Pattern:
+        break;
+    }
+    return color_of_pattern(textures, texture, texture.on_uv ? moved_to_uv(point) : point);
+}
+
+double value_at(std::span<const Texture> textures, uint32_t number, const TexturePoint& point) {
+    const Texture& texture = textures[number];
+    if (texture.kind == TextureKind::Pattern && !texture.on_uv)
+        return evaluate(texture.pattern, point.at).value;
+    return double(mean_of(color_at(textures, number, point)));
 }
 
 } // namespace ovc

@@ -18,7 +18,15 @@ struct PatternPlace {
 PatternPlace evaluate(const Pattern& pattern, const dvec3& at);
 
 /// Returns the color of textures[number] at a point of its space.
-TransparentColor color_at(std::span<const Texture> textures, uint32_t number, const dvec3& at);
+TransparentColor color_at(std::span<const Texture> textures, uint32_t number,
+                          const TexturePoint& point);
+inline TransparentColor color_at(std::span<const Texture> textures, uint32_t number,
+                                 const dvec3& at) {
+    return color_at(textures, number, TexturePoint{at});
+}
+
+/// Returns what varies in textures[number] as a number: the pattern's value, or the mean color.
+double value_at(std::span<const Texture> textures, uint32_t number, const TexturePoint& point);
 
 /// Two neighbouring stops, by their indices, and the share of the second.
 struct Between {

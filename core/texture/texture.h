@@ -3,28 +3,17 @@
 // docs/decisions/0033-textures-are-trees-in-the-scene.md says why it has this form.
 #pragma once
 
+#include "core/texture/image_texture.h"
 #include "core/texture/noise.h"
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace ovc {
 
 inline constexpr uint32_t kNoTexture = UINT32_MAX;
-
-/// The color of a place of a surface, and the light that it lets through: light x rgb x filter +
-/// light x transmit.
-struct TransparentColor {
-    vec3 rgb{0};
-    float filter = 0;
-    float transmit = 0;
-
-    float opacity() const { return 1 - filter - transmit; }
-    /// Returns the share of light that goes through, for each color.
-    vec3 through() const { return filter * rgb + vec3(transmit); }
-    bool operator==(const TransparentColor&) const = default;
-};
 
 /// A step on the way of a point to where a pattern is evaluated.
 struct TextureStep {
@@ -93,13 +82,35 @@ struct TextureStop {
     bool operator==(const TextureStop&) const = default;
 };
 
-/// Colors between stops are mixed in proportion. `stops`: at least one, in ascending order of `at`
-/// except for Kind::Average.
+/// What a texture makes of its parts.
+enum class TextureKind : uint64_t {
+    Pattern, // colors between stops are mixed in proportion, by the value of the pattern
+    Image,   // the color of `image`, at the point that the pattern's affine steps lead to
+    Product, // of all stops
+    Mix,     // of the first two stops; the mean color of the third is the share of the second
+};
+
+/// `stops`: at least one except for an image, for patterns in ascending order of `at` except for
+/// Kind::Average; three for a mix.
 struct Texture {
     Pattern pattern;
     std::vector<TextureStop> stops;
+    TextureKind kind = TextureKind::Pattern;
+    bool on_uv = false; // evaluated at (u, v, 0) of the surface instead of a point in space
+    std::optional<ImageTexture> image = {};
 
     bool operator==(const Texture&) const = default;
+};
+
+/// The place of a surface where textures are evaluated.
+struct TexturePoint {
+    dvec3 at; // in the texture's space
+    /// The sides of the parallelogram around the point of which a texture is to take the mean.
+    std::array<dvec3, 2> sides{};
+    bool has_uv = false; // without, textures on uv have the color that they have without a picture
+    dvec2 uv{0};
+    std::array<dvec2, 2> uv_sides{};
+    std::array<dvec3, 2> by_uv{}; // how the point of the world moves by u and by v
 };
 
 /// A texture as it lies in the world.
@@ -111,6 +122,14 @@ struct PlacedTexture {
     dvec3 at(const dvec3& world) const {
         const dvec4 p(world, 1);
         return {glm::dot(to_texture[0], p), glm::dot(to_texture[1], p), glm::dot(to_texture[2], p)};
+    }
+    /// Returns a point of the world as one of the texture's space.
+    TexturePoint at(TexturePoint world) const {
+        for (dvec3& side : world.sides)
+            side = {glm::dot(dvec3(to_texture[0]), side), glm::dot(dvec3(to_texture[1]), side),
+                    glm::dot(dvec3(to_texture[2]), side)};
+        world.at = at(world.at);
+        return world;
     }
     bool operator==(const PlacedTexture&) const = default;
 };

@@ -175,7 +175,7 @@ Result<BackendOptions> BackendArguments::resolve() const {
         options.gpu_memory = *size;
     }
     if (!host_memory.empty()) {
-        const Result<uint64_t> bytes = parse_host_memory(host_memory);
+        const Result<uint64_t> bytes = parse_bytes("--host-memory", host_memory);
         if (!bytes)
             return bytes.error();
         options.host_bytes = *bytes;

@@ -61,12 +61,12 @@ Result<MemorySize> parse_memory_size(std::string_view text) {
     return bytes >= 1 ? Result<MemorySize>(MemorySize{uint64_t(bytes), 0}) : too_small;
 }
 
-Result<uint64_t> parse_host_memory(std::string_view text) {
+Result<uint64_t> parse_bytes(std::string_view option, std::string_view text) {
     const Result<MemorySize> size = parse_memory_size(text);
     if (!size)
-        return Error{"--host-memory: " + size.error().message};
+        return Error{fmt::format("{}: {}", option, size.error().message)};
     if (size->share > 0)
-        return Error{fmt::format("--host-memory: found '{}', expected bytes, such as 2G", text)};
+        return Error{fmt::format("{}: found '{}', expected bytes, such as 2G", option, text)};
     return size->bytes;
 }
 

@@ -28,8 +28,9 @@ struct MemorySize {
 /// more than 100 %.
 Result<MemorySize> parse_memory_size(std::string_view text);
 
-/// Parses --host-memory. Error: as above, or a share; the sentence begins with the option.
-Result<uint64_t> parse_host_memory(std::string_view text);
+/// Parses the value of an option such as --host-memory. Error: as above, or a share; the sentence
+/// begins with the option.
+Result<uint64_t> parse_bytes(std::string_view option, std::string_view text);
 
 /// Returns a text such as "12.0 MiB" or "640 bytes".
 std::string human_bytes(uint64_t bytes);

@@ -301,7 +301,7 @@ static Result<Done> understand_kind(const BenchWords& words, BenchJob& job) {
 static Result<Done> keep_to_host_memory(const BenchWords& words, BenchJob& job) {
     if (words.host_memory.empty())
         return Done{};
-    const Result<uint64_t> bytes = parse_host_memory(words.host_memory);
+    const Result<uint64_t> bytes = parse_bytes("--host-memory", words.host_memory);
     if (!bytes)
         return bytes.error();
     job.host_bytes = *bytes;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <utility>
 
 namespace ovc {
@@ -35,15 +36,29 @@ dvec2 sample_place(uint32_t i, uint32_t samples) {
                         : dvec2(mirrored_bits(i) + to_the_middle, pascal_bits(i) + to_the_middle);
 }
 
+/// Returns the cone of the rays through a pixel in the middle of the picture, of which there are so
+/// many.
+static Cone cone_of(const Pinhole& pinhole, uint32_t samples) {
+    const uint32_t x = pinhole.width() / 2, y = pinhole.height() / 2;
+    const Ray a = pinhole.ray(x, y, dvec2(0, 0.5)), b = pinhole.ray(x, y, dvec2(1, 0.5));
+    const double length_a = glm::length(a.dir), length_b = glm::length(b.dir);
+    if (!(length_a > 0) || !(length_b > 0))
+        return {};
+    const double share = 1 / std::sqrt(double(samples));
+    return {float(share * glm::length(b.org - a.org)),
+            float(share * glm::length(b.dir / length_b - a.dir / length_a))};
+}
+
 CameraRays::CameraRays(const Pinhole& pinhole, const Film& film)
     : pinhole_(pinhole),
+      cone_(cone_of(pinhole, film.samples())),
       samples_(film.samples()),
       order_(pixel_order(film.width(), film.height())) {
     std::erase_if(order_, [&](uint32_t pixel) { return film.done(pixel); });
 }
 
 CameraRays::CameraRays(const Pinhole& pinhole, const Film& film, std::span<const dvec2> points)
-    : pinhole_(pinhole), samples_(1), points_(points) {
+    : pinhole_(pinhole), cone_(cone_of(pinhole, 1)), samples_(1), points_(points) {
     assert(points.size() == uint64_t(film.width()) * film.height());
     for (uint32_t pixel = 0; pixel < points.size(); ++pixel)
         if (!film.done(pixel))
@@ -88,8 +103,8 @@ void CameraRays::make(uint64_t first, size_t count, RayList<Path>& paths) const 
             const Place at = place(first + i);
             paths.rays[before + i] = pinhole_.ray(at.x, at.y, at.within);
             paths.skip[before + i] = TriangleId();
-            paths.purposes[before + i] = {at.pixel, at.sample, 0, RayKind::Camera,
-                                          false,    vec3(1),   0};
+            paths.purposes[before + i] = {
+                at.pixel, at.sample, 0, RayKind::Camera, false, vec3(1), 0, 0, cone_};
         }
     });
 }

@@ -48,6 +48,7 @@ private:
     Place place(uint64_t i) const;
 
     const Pinhole& pinhole_;
+    const Cone cone_;
     const uint32_t samples_;
     std::vector<uint32_t> order_;   // pixels of the film
     std::span<const dvec2> points_; // empty: rays through pixels

@@ -3,6 +3,7 @@
 // host/render/render_job.cpp does the work.
 #include "host/arguments/backend_arguments.h"
 #include "host/arguments/log_arguments.h"
+#include "host/arguments/memory_size.h"
 #include "host/arguments/pov_words.h"
 #include "host/camera/camera.h"
 #include "host/camera/camera_path_file.h"
@@ -88,6 +89,7 @@ struct RenderWords {
     bool no_cutouts = false;
     bool working_set = false;
     BackendArguments backend;
+    std::string texture_memory;
     std::string cache;
     std::string stats;
     LogArguments log{LogLevel::Info};
@@ -202,6 +204,10 @@ void RenderWords::add_light_to(CLI::App& app) {
     app.add_option("--png-bits", png_bits, "Bits a channel of .png files; default: 8")
         ->type_name(choice_names(kPngBits));
     app.add_flag("--no-shadows", no_shadows, "Lights shine through everything");
+    app.add_option("--texture-memory", texture_memory,
+                   "For texels of the scene's pictures, at least 10M; default: 256M "
+                   "(docs/guide/textures.md)")
+        ->type_name("SIZE");
     app.add_flag("--no-cutouts", no_cutouts, "Surfaces have no holes, whatever their pictures say");
 }
 
@@ -468,6 +474,12 @@ static Result<Done> understand_shading(const RenderWords& words, RenderJob& job)
     job.render.integrator = IntegratorKind(*integrator);
     job.render.shadows = !words.no_shadows;
     job.render.cutouts = !words.no_cutouts;
+    if (!words.texture_memory.empty()) {
+        const Result<uint64_t> bytes = parse_bytes("--texture-memory", words.texture_memory);
+        if (!bytes)
+            return bytes.error();
+        job.texture_memory = *bytes;
+    }
     if (isatty(STDERR_FILENO))
         job.render.batch_rays = kWatchedBatchRays;
     return Done{};

@@ -539,6 +539,9 @@ Result<int> render(const RenderJob& job) {
     Result<Scene> scene = cache.open(log);
     if (!scene)
         return scene.error();
+    ScenePictures pictures({job.texture_memory, job.scene.strict}, log);
+    if (const Result<Done> opened = pictures.open(*scene); !opened)
+        return opened.error();
     if (job.render.integrator == IntegratorKind::Whitted)
         tell_simplifications(*scene, job.lights.empty() ? scene->lights : job.lights,
                              job.scene.name(), log);
@@ -570,9 +573,11 @@ Result<int> render(const RenderJob& job) {
         cache.keep(*scene, **backend, log);
     options.saved = {}; // of the first moment
     options.sample = {};
-    Stage stage(job, *scene, std::move(*backend), options);
+    Stage stage(job, *scene, pictures, std::move(*backend), options);
     Result<Done> done = render_shots(job, *there, *part, stage, *scene, log, stats);
     if (!done)
+        return done.error();
+    if (done = pictures.check(*scene); !done)
         return done.error();
     add_what_backend_tells(job, *scene, stage, stats);
     return tell(job, total, scene->omissions, stats);

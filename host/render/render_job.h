@@ -6,6 +6,7 @@
 #include "host/backend/backend.h"
 #include "host/output/aov.h"
 #include "host/render/render.h"
+#include "host/scene/scene_pictures.h"
 #include "host/scene/scene_source.h"
 
 #include <optional>
@@ -50,8 +51,9 @@ struct RenderJob {
     std::optional<uint32_t> max_depth; // none: the scene's, else that of `render`
     uint32_t samples = 1;              // camera rays a pixel
     BackendOptions backend;
-    Aovs aovs;         // in the outputs that take layers
-    int png_bits = 8;  // per channel, 8 or 16
+    Aovs aovs;                                       // in the outputs that take layers
+    int png_bits = 8;                                // per channel, 8 or 16
+    uint64_t texture_memory = kDefaultTextureMemory; // for the texels of pictures
     std::string cache; // the folder where scenes and levels are kept; empty: none
     std::string stats;
     bool go_on = false;       // continues an interrupted run from its files

@@ -11,11 +11,12 @@
 
 namespace ovc {
 
-Stage::Stage(const RenderJob& job, Scene& scene, std::unique_ptr<Backend> backend,
-             const BackendOptions& options)
+Stage::Stage(const RenderJob& job, Scene& scene, ScenePictures& pictures,
+             std::unique_ptr<Backend> backend, const BackendOptions& options)
     : arguments_(job.scene),
       size_(job.size),
       scene_(scene),
+      pictures_(pictures),
       backend_(std::move(backend)),
       options_(options),
       given_lights_(job.lights),
@@ -37,6 +38,8 @@ Result<Done> Stage::go_to(const Moment& moment) {
     // A backend has the corners of meshes that are gone until it is up to date.
     const std::vector<Chunk> gone = take_over(scene_.soup, std::exchange(next->soup, {}), changes);
     take_all_but_soup(std::move(*next), changes.added > 0);
+    if (const Result<Done> opened = pictures_.open(scene_); !opened)
+        return opened;
     return changes.any() ? update(changes) : Result<Done>(Done{});
 }
 

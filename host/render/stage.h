@@ -15,10 +15,10 @@ struct SoupDifference;
 
 class Stage {
 public:
-    /// The scene is that of the job's first moment, and the backend is built of it; the scene and
-    /// the job outlive this. options: for building anew.
-    Stage(const RenderJob& job, Scene& scene, std::unique_ptr<Backend> backend,
-          const BackendOptions& options);
+    /// The scene is that of the job's first moment, with its pictures, and the backend is built of
+    /// it; the scene, its pictures and the job outlive this. options: for building anew.
+    Stage(const RenderJob& job, Scene& scene, ScenePictures& pictures,
+          std::unique_ptr<Backend> backend, const BackendOptions& options);
 
     Backend& backend() { return *backend_; }
     /// Returns what the backend tells, and what those before it have counted besides.
@@ -39,6 +39,7 @@ private:
     SceneArguments arguments_;
     const std::optional<ImageSize> size_;
     Scene& scene_;
+    ScenePictures& pictures_;
     std::unique_ptr<Backend> backend_;
     const BackendOptions options_;
     const std::vector<Light>& given_lights_;

@@ -121,7 +121,8 @@ protected:
 TEST_P(MovingScene, HasTheFramesOfOneThatIsBuiltAnew) {
     Made first = made_at(1);
     ASSERT_TRUE(first.backend);
-    Stage stage(first.job, *first.scene, std::move(first.backend), first.job.backend);
+    ScenePictures pictures({}, LogSink());
+    Stage stage(first.job, *first.scene, pictures, std::move(first.backend), first.job.backend);
     std::vector<Hit> before;
     for (uint32_t frame = 1; frame <= kFrames; ++frame) {
         ASSERT_TRUE(stage.go_to(Moment::of_frame(frame, 1, kFrames)));
@@ -153,7 +154,8 @@ TEST(Stage, KeepsWhatIsMappedIntoMemory) {
     Result<Scene> scene = open_scene(job.scene, {});
     ASSERT_TRUE(scene);
     const Triangle first = scene->soup.triangle({0, 7});
-    Stage stage(job, *scene, make_cpu_backend(scene->soup), job.backend);
+    ScenePictures pictures({}, LogSink());
+    Stage stage(job, *scene, pictures, make_cpu_backend(scene->soup), job.backend);
     for (const uint32_t frame : {2u, 3u}) {
         ASSERT_TRUE(stage.go_to(Moment::of_frame(frame, 1, 3)));
         EXPECT_EQ(scene->soup.triangle({0, 7}), first);

@@ -45,7 +45,13 @@ public:
             move(mesh.cutout, cutouts);
             move(mesh.shadow_cutout, cutouts);
         }
+        for (Cutout& cutout : scene.cutouts)
+            move(cutout.texture, textures);
+        for (Texture& texture : scene.textures)
+            if (texture.image)
+                texture.image->picture += uint32_t(all_.pictures.size());
         move_textures(scene, textures, materials);
+        append(all_.pictures, scene.pictures);
         append(all_.textures, scene.textures);
         append(all_.materials, scene.materials);
         append(all_.cutouts, scene.cutouts);
@@ -75,6 +81,12 @@ private:
                 mixes[material.mix->texture] = true;
             if (material.bump)
                 material.bump->pattern.texture += textures;
+            if (material.normal_map)
+                material.normal_map->texture += textures;
+            if (auto& maps = material.maps)
+                for (uint32_t* map :
+                     {&maps->reflection, &maps->width, &maps->emission, &maps->metallic})
+                    *map += *map == kNone ? 0 : textures;
             for (std::optional<PlacedTexture>* placed : {&material.texture, &material.mix})
                 if (*placed)
                     (*placed)->texture += textures;

@@ -63,7 +63,9 @@ Bsdf::Bsdf(const SurfacePoint& surface) : geometric_(surface.geometric_normal) {
     view_ = local(-surface.view);
     view_.z = std::max(view_.z, 1e-9); // a rounding may put an edge-on view below the plane
     const Material& material = *surface.material;
-    if (material.optics)
+    if (material.optics && (material.texture || material.maps))
+        take_optics(surface, optics_at(surface));
+    else if (material.optics)
         take_optics(surface, *material.optics);
     else if (material.finish)
         take_finish(surface, *material.finish);
@@ -149,7 +151,7 @@ void Bsdf::take_finish(const SurfacePoint& surface, const Finish& finish) {
     // over pi where all light is reflected; Phong's of m is as wide as Blinn's of 4 m.
     const bool blinn = finish.specular > 0 && finish.roughness > 0;
     const double exponent = blinn ? 1 / double(finish.roughness) : 4 * double(finish.phong_size);
-    const float height = blinn ? finish.specular : finish.phong;
+    const float height = surface.maps.gloss() * (blinn ? finish.specular : finish.phong);
     const float share = std::min(float(8 * height / (exponent + 2)), 1.0f);
     if (share > 0) {
         is_glossy_ = true;

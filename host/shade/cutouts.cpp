@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/shade/cutouts.h"
 
+#include "core/texture/pattern.h"
+
 #include <algorithm>
 #include <bit>
 #include <cassert>
@@ -53,8 +55,9 @@ float chance_of(const Hit& hit) {
     return float(hash >> 40) * 0x1p-24f;
 }
 
-bool is_there(const Cutout& cutout, const dvec2& uv, const Hit& hit) {
-    const float opacity = opacity_at(cutout, uv);
+bool is_there(const Cutout& cutout, std::span<const Texture> textures, const dvec2& uv,
+              const Hit& hit) {
+    const float opacity = opacity_at(cutout, uv, textures);
     if (opacity <= 0 || opacity >= 1 || !cutout.partial)
         return opacity > 0;
     return chance_of(hit) < opacity;
@@ -62,7 +65,26 @@ bool is_there(const Cutout& cutout, const dvec2& uv, const Hit& hit) {
 
 } // namespace
 
-float opacity_at(const Cutout& cutout, const dvec2& uv) {
+/// Returns the mean color of the cutout's texture, at its finest.
+static float opacity_of_texture(const Cutout& cutout, std::span<const Texture> textures,
+                                const dvec2& uv) {
+    TexturePoint point{dvec3(uv, 0)};
+    point.has_uv = true;
+    point.uv = uv;
+    return float(value_at(textures, cutout.texture, point));
+}
+
+static float limited(const Cutout& cutout, float opacity) {
+    if (cutout.threshold > 0)
+        return opacity >= cutout.threshold ? 1.0f : 0.0f;
+    return std::clamp(opacity, 0.0f, 1.0f);
+}
+
+float opacity_at(const Cutout& cutout, const dvec2& uv, std::span<const Texture> textures) {
+    if (!std::isfinite(uv.x) || !std::isfinite(uv.y))
+        return 0;
+    if (cutout.texture != kNoTexture)
+        return limited(cutout, cutout.scale * opacity_of_texture(cutout, textures, uv));
     assert(cutout.width > 0 && cutout.height > 0);
     const dvec2 at = cutout.uv_scale * uv + cutout.uv_offset;
     const dvec2 texels(at.x * cutout.width, (1 - at.y) * cutout.height);
@@ -70,7 +92,7 @@ float opacity_at(const Cutout& cutout, const dvec2& uv) {
         return 0;
     const float opacity = cutout.smooth ? smooth_opacity(cutout, texels)
                                         : texel(cutout, std::floor(texels.x), std::floor(texels.y));
-    return std::clamp(cutout.scale * opacity, 0.0f, 1.0f);
+    return limited(cutout, cutout.scale * opacity);
 }
 
 Cutouts::Cutouts(const Scene& scene, Asked asked)
@@ -79,6 +101,7 @@ Cutouts::Cutouts(const Scene& scene, Asked asked)
                                    return mesh.cutout != kNone || (asked == Asked::ByShadowRays &&
                                                                    mesh.shadow_cutout != kNone);
                                })),
+      textures_(scene.textures),
       meshes_(any_ ? scene.meshes.size() : 0) {
     const auto cutout = [&](uint32_t i) { return i == kNone ? nullptr : &scene.cutouts[i]; };
     for (size_t m = 0; m < meshes_.size(); ++m) {
@@ -103,8 +126,8 @@ bool Cutouts::counts(const Hit& hit) const {
     const std::array<vec2, 3> uv = mesh.uv.of(hit.id.prim);
     const dvec2 at =
         (1 - hit.u - hit.v) * dvec2(uv[0]) + hit.u * dvec2(uv[1]) + hit.v * dvec2(uv[2]);
-    return (!mesh.all || is_there(*mesh.all, at, hit)) &&
-           (!mesh.shadow || is_there(*mesh.shadow, at, hit));
+    return (!mesh.all || is_there(*mesh.all, textures_, at, hit)) &&
+           (!mesh.shadow || is_there(*mesh.shadow, textures_, at, hit));
 }
 
 } // namespace ovc

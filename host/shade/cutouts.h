@@ -5,6 +5,7 @@
 #include "core/scene.h"
 #include "core/sieve.h"
 
+#include <span>
 #include <vector>
 
 namespace ovc {
@@ -36,10 +37,12 @@ private:
     bool counts(const Hit& hit) const;
 
     const bool any_;
+    std::span<const Texture> textures_;
     std::vector<OfMesh> meshes_; // empty where none has holes
 };
 
 /// Returns the opacity at the texture coordinates, from 0 to 1; 0 where these are no numbers.
-float opacity_at(const Cutout& cutout, const dvec2& uv);
+/// textures: of the scene.
+float opacity_at(const Cutout& cutout, const dvec2& uv, std::span<const Texture> textures = {});
 
 } // namespace ovc

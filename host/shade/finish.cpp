@@ -39,7 +39,8 @@ static vec3 reflected_share(const SurfacePoint& surface) {
     const double grazing = finish.fresnel
                                ? fresnel_share(cosine, surface.entering ? inside : 1 / inside)
                                : std::pow(1 - cosine, double(finish.reflection_falloff));
-    return glm::mix(finish.reflection, finish.grazing_reflection, float(grazing)) *
+    return surface.maps.gloss() *
+           glm::mix(finish.reflection, finish.grazing_reflection, float(grazing)) *
            metallic_tint(surface, finish.metallic_reflection, cosine);
 }
 
@@ -67,8 +68,8 @@ vec3 finish_light(const SurfacePoint& surface, const dvec3& towards, const vec3&
     vec3 light = surface.color * (surface.opacity * finish.diffuse *
                                   float(std::pow(cosine, double(finish.brilliance))));
     if (highlights)
-        light +=
-            metallic_tint(surface, finish.metallic, cosine) * float(highlight(surface, towards));
+        light += surface.maps.gloss() * metallic_tint(surface, finish.metallic, cosine) *
+                 float(highlight(surface, towards));
     return light * arriving;
 }
 

@@ -8,6 +8,7 @@
 #include "core/vec.h"
 #include "host/backend/ray_list.h"
 #include "host/film/film.h"
+#include "host/shade/cone.h"
 
 #include <cstdint>
 #include <span>
@@ -28,6 +29,7 @@ struct Path {
                       // possible
     float behind = 0; // path tracing: the distance from the ray's origin back to where the
                       // direction was chosen, through panes that do not bend it
+    Cone cone = {};
 };
 
 /// The purpose of a shadow ray, which reaches the light, or a point of it, at t = 1.

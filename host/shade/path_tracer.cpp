@@ -6,12 +6,16 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 
 namespace ovc {
 
 /// From this depth on, paths that carry little end by chance, and the others carry more.
 static constexpr uint32_t kRouletteFrom = 3;
 static constexpr float kMinSurvival = 0.05f;
+/// The spread of the cone of light that a surface scatters: further surfaces seen in it are
+/// blurred.
+static constexpr float kBounceSpread = 0.25f;
 
 /// The purposes of the random numbers of a surface.
 enum Purpose : uint32_t { kChoices, kLightPlace, kDirection, kRoulette, kPurposes };
@@ -57,7 +61,7 @@ PathTracer::PathTracer(const Scene& scene, const vec3& up, const PathTracerOptio
     : scene_(scene),
       up_(up),
       options_(options),
-      lights_(scene),
+      lights_(scene, up),
       unexposed_(1 / scene.exposure),
       light_may_pass_(light_passes(scene, lights_.has_lights())) {
     assert(options.max_depth <= UINT16_MAX); // Path::depth counts to it
@@ -70,15 +74,14 @@ void PathTracer::shade(std::span<const Ray> rays, std::span<const Path> paths,
         if (hits[i].is_hit())
             meet(rays[i], paths[i], hits[i], film, sides, spawned);
         else
-            film.add(paths[i].pixel,
-                     paths[i].weight * unexposed_ * background_color(scene_, up_, rays[i].dir));
+            film.add(paths[i].pixel, paths[i].weight * unexposed_ * seen_sky(rays[i], paths[i]));
     for (const RayList<Path>* side : {&sides.mirrored, &sides.through, &sides.bounced})
         spawned.paths.append(*side);
 }
 
 void PathTracer::meet(const Ray& ray, const Path& path, const Hit& hit, Film& film, Sides& sides,
                       Spawned& spawned) const {
-    const SurfacePoint surface = surface_point(scene_, ray, hit);
+    const SurfacePoint surface = surface_point(scene_, ray, hit, path.cone);
     const double distance = double(path.behind) + hit.t * glm::length(ray.dir);
     const Met met{ray, path, hit, distance, surface, Bsdf(surface)};
     film.add(path.pixel, path.weight * unexposed_ * seen_emission(met));
@@ -102,6 +105,19 @@ void PathTracer::meet(const Ray& ray, const Path& path, const Hit& hit, Film& fi
     }
     if (weight != vec3(0))
         go_on(met, *scattered, weight, sides);
+}
+
+/// Returns the share of the light of the sky that paths bring, the rest of which shadow rays do.
+vec3 PathTracer::seen_sky(const Ray& ray, const Path& path) const {
+    const vec3 sky = background_color(scene_, up_, ray.dir);
+    if (!(path.density > 0) || options_.search == LightSearch::Paths)
+        return sky;
+    const double by_light = lights_.sky_density(glm::normalize(ray.dir));
+    if (!(by_light > 0))
+        return sky;
+    if (options_.search == LightSearch::ShadowRays)
+        return vec3(0);
+    return sky * float(share_of(double(path.density), by_light));
 }
 
 vec3 PathTracer::seen_emission(const Met& met) const {
@@ -146,7 +162,9 @@ void PathTracer::go_on(const Met& met, const Scattered& scattered, const vec3& w
               /* reflected= */ true,
               weight,
               float(scattered.density)};
+    path.cone = {from.cone.width_at(met.hit.t * glm::length(met.ray.dir)), from.cone.spread};
     if (scattered.density > 0) {
+        path.cone.spread = std::max(path.cone.spread, kBounceSpread);
         Ray ray;
         ray.org = met.surface.position;
         ray.dir = scattered.direction;
@@ -177,8 +195,9 @@ bool PathTracer::pass(const Hit& hit, Ray& ray, Shadow& shadow) const {
     shadow.arriving *= ends ? vec3(0) : Bsdf(surface).through();
     ++shadow.passed;
     const dvec3 there = ray.dir;
-    ray = is_light ? shadow_ray(scene_.lights[shadow.light], surface.beyond)
-                   : Ray{surface.beyond, 0, ray.at(1) - surface.beyond, ray.t_max};
+    ray = is_light                   ? shadow_ray(scene_.lights[shadow.light], surface.beyond)
+          : std::isfinite(ray.t_max) ? Ray{surface.beyond, 0, ray.at(1) - surface.beyond, ray.t_max}
+                                     : Ray{surface.beyond, 0, ray.dir, ray.t_max};
     // A light that lies in the surface has been reached; going back to it might never end.
     return shadow.arriving != vec3(0) && glm::dot(ray.dir, there) > 0;
 }

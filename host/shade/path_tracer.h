@@ -9,7 +9,7 @@
 #include "core/scene.h"
 #include "host/shade/bsdf.h"
 #include "host/shade/integrator.h"
-#include "host/shade/light_sampler.h"
+#include "host/shade/lights/light_sampler.h"
 
 #include <cstdint>
 
@@ -43,6 +43,7 @@ private:
     struct Sides;
     void meet(const Ray& ray, const Path& path, const Hit& hit, Film& film, Sides& sides,
               Spawned& spawned) const;
+    vec3 seen_sky(const Ray& ray, const Path& path) const;
     vec3 seen_emission(const Met& met) const;
     void light_up(const Met& met, double choice, const dvec2& u, Film& film,
                   Spawned& spawned) const;

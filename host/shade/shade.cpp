@@ -8,6 +8,7 @@
 #include "host/shade/finish.h"
 #include "host/shade/refract.h"
 #include "host/shade/surface/surface_material.h"
+#include "host/shade/surface/texture_place.h"
 
 #include <algorithm>
 #include <cassert>
@@ -88,7 +89,7 @@ static dvec3 weights_off_edges(const Hit& hit, const Triangle& t, double doubled
     return least + (1 - least.x - least.y - least.z) * glm::clamp(weights, 0.0, 1.0);
 }
 
-SurfacePoint surface_point(const Scene& scene, const Ray& ray, const Hit& hit) {
+SurfacePoint surface_point(const Scene& scene, const Ray& ray, const Hit& hit, const Cone& cone) {
     assert(hit.is_hit() && hit.id.mesh < scene.meshes.size());
     const MeshInfo& mesh = scene.meshes[hit.id.mesh];
     const Triangle t = scene.soup.triangle(hit.id);
@@ -111,7 +112,11 @@ SurfacePoint surface_point(const Scene& scene, const Ray& ray, const Hit& hit) {
     const dvec3 on_plane = w[0] * t[0] + w[1] * t[1] + w[2] * t[2];
     s.position = on_plane + offset * s.geometric_normal;
     s.beyond = on_plane - offset * s.geometric_normal;
-    take_material(scene, mesh.material, on_plane, s);
+    TexturePoint point{on_plane};
+    if (!scene.textures.empty())
+        take_texture_place(scene, mesh, t, hit, cone.width_at(hit.t * glm::length(ray.dir)), s,
+                           point);
+    take_material(scene, mesh.material, point, s);
     return s;
 }
 
@@ -145,7 +150,9 @@ vec3 ambient_light(const Background& background, const vec3& up, const SurfacePo
     const vec3 ground = kGround * background.horizon;
     const vec3 sky = 0.5f * (background.horizon + background.zenith);
     const float openness = 0.5f + 0.5f * float(glm::dot(surface.normal, dvec3(up)));
-    return surface.color * (kAmbient + kSkyShare * glm::mix(ground, sky, openness));
+    const std::optional<Optics>& optics = surface.material->optics;
+    return surface.color * (kAmbient + kSkyShare * glm::mix(ground, sky, openness)) +
+           (optics ? surface.maps.emission * optics->emission : vec3(0));
 }
 
 /// Returns the vector from the position to the light, at its full length.
@@ -202,10 +209,11 @@ Branches branches(const SurfacePoint& surface, bool total) {
     const Material& material = *surface.material;
     if (material.finish)
         return finish_branches(surface, total);
+    const float mirror = surface.maps.gloss() * material.mirror;
     const float through = std::min(material.transmission, 1 - material.mirror);
     if (total)
-        return {vec3(material.mirror + through), vec3(0), material.mirror + through, 0};
-    return {vec3(material.mirror), through * material.filter, material.mirror, through};
+        return {vec3(mirror + through), vec3(0), mirror + through, 0};
+    return {vec3(mirror), through * material.filter, mirror, through};
 }
 
 Ray mirror_ray(const Ray& ray, const SurfacePoint& surface) {

@@ -5,6 +5,7 @@
 
 #include "core/ray.h"
 #include "core/scene.h"
+#include "host/shade/cone.h"
 
 #include <cstdint>
 #include <optional>
@@ -13,6 +14,17 @@
 namespace ovc {
 
 struct Coat;
+
+/// The values of a material's maps at a point: factors of the parts that they are for.
+struct MapValues {
+    vec3 reflection{1};
+    vec3 emission{1};
+    float width = 1;
+    float metal = -1; // the share of metal; below 0: there is no such map
+
+    /// Returns the factor of mirror images and highlights.
+    float gloss() const { return (reflection.x + reflection.y + reflection.z) / 3; }
+};
 
 /// A point on a surface as a ray saw it: both normals face the ray and are of unit length.
 struct SurfacePoint {
@@ -25,10 +37,14 @@ struct SurfacePoint {
     vec3 color;        // the material's color here
     float opacity = 1; // multiplies ambient and diffuse light; 1 where the finish is dimmed already
     vec3 through{0};   // with a finish: the share of light that goes through here, for each color
-    bool entering;     // the ray came from outside, from where the corners run counterclockwise
+    MapValues maps;
+    bool entering; // the ray came from outside, from where the corners run counterclockwise
     /// The parts of a material that is layered or mixed; else empty. `color` is then their mean.
     std::vector<Coat> coats;
 };
+
+/// Returns the optics of the point's material, which has some, there.
+Optics optics_at(const SurfacePoint& surface);
 
 /// The same point with one material, and the share of it that is seen, for each color.
 struct Coat {
@@ -40,7 +56,9 @@ struct Coat {
 /// than float can tell but more than double errs, so that a second triangle in the same place is
 /// neither a shadow nor a second surface. Near an edge they are also moved into the triangle, since
 /// its neighbour may bend towards either side. Spawned rays skip the triangle itself by its id.
-SurfacePoint surface_point(const Scene& scene, const Ray& ray, const Hit& hit);
+/// cone: of the ray; without one, textures are seen at a point.
+SurfacePoint surface_point(const Scene& scene, const Ray& ray, const Hit& hit,
+                           const Cone& cone = {});
 
 /// Returns the color that a ray in direction `dir` sees where it hits nothing. up: unit length.
 vec3 background_color(const Scene& scene, const vec3& up, const dvec3& dir);

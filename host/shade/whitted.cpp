@@ -84,7 +84,8 @@ void Whitted::shade(std::span<const Ray> rays, std::span<const Path> paths,
 /// color keeps the weight of a ray that is not followed.
 Whitted::Met Whitted::meet(const Ray& ray, const Path& path, const Hit& hit,
                            Spawned& spawned) const {
-    Met met{surface_point(scene_, ray, hit), hit.id, path.pixel, path.weight};
+    Met met{surface_point(scene_, ray, hit, path.cone), hit.id, path.pixel, path.weight};
+    const Cone cone{path.cone.width_at(hit.t * glm::length(ray.dir)), path.cone.spread};
     const bool clear = lets_light_through(met.surface);
     const std::optional<Ray> refracted = clear ? refracted_ray(ray, met.surface) : std::nullopt;
     const bool total = clear && !refracted;
@@ -98,7 +99,7 @@ Whitted::Met Whitted::meet(const Ray& ray, const Path& path, const Hit& hit,
         const bool reflected = path.reflected || kind == RayKind::Reflection;
         spawned.paths.push(child(), hit.id,
                            {path.pixel, path.sample, uint16_t(path.depth + deeper), kind, reflected,
-                            weight, path.density});
+                            weight, path.density, path.behind, cone});
     };
     follow(parts.mirror, parts.taken_by_mirror, RayKind::Reflection, 1,
            [&] { return mirror_ray(ray, met.surface); });

@@ -4,6 +4,8 @@
 #include "core/text/lower_case.h"
 #include "importers/file/source.h"
 #include "importers/file/text.h"
+#include "importers/mesh/assimp_look.h"
+#include "importers/pbrt/look/exposure.h"
 #include "importers/readers.h"
 
 #include <assimp/DefaultIOSystem.h>
@@ -27,35 +29,6 @@ constexpr unsigned kSteps = aiProcess_Triangulate | aiProcess_PreTransformVertic
 
 vec3 from(const aiVector3D& v) {
     return {v.x, v.y, v.z};
-}
-
-/// The base color tints glTF's transmission, but not the opacity that other formats know.
-void let_light_through(const aiMaterial& source, Material& material) {
-    ai_real share = 0, opacity = 1, ior = 1;
-    source.Get(AI_MATKEY_TRANSMISSION_FACTOR, share);
-    source.Get(AI_MATKEY_OPACITY, opacity);
-    source.Get(AI_MATKEY_REFRACTI, ior);
-    const bool tinted = share > 0;
-    share = tinted ? share : 1 - opacity;
-    if (!(share > 0))
-        return;
-    material.transmission = std::min(float(share), 1.0f);
-    material.filter = tinted ? material.color : vec3(1);
-    if (is_usable_ior(ior))
-        material.ior = ior;
-}
-
-Material material_from(const aiMaterial& source) {
-    Material material;
-    material.name = source.GetName().C_Str();
-    aiColor3D color;
-    if (source.Get(AI_MATKEY_COLOR_DIFFUSE, color) == AI_SUCCESS) {
-        const vec3 rgb(color.r, color.g, color.b);
-        if (is_finite(rgb))
-            material.color = glm::clamp(rgb, vec3(0), vec3(1));
-    }
-    let_light_through(source, material);
-    return material;
 }
 
 bool is_triangle(const aiFace& face, const aiMesh& mesh) {
@@ -84,7 +57,21 @@ std::vector<vec3> normals_from(const aiMesh& mesh) {
     return smooth ? normals : std::vector<vec3>();
 }
 
-void add_mesh(Scene& scene, const aiMesh& mesh) {
+/// Returns the texture coordinates of the set, one per corner; none if the mesh has no such set.
+std::vector<vec2> uv_from(const aiMesh& mesh, uint32_t set) {
+    std::vector<vec2> uv;
+    for (unsigned f = 0; mesh.HasTextureCoords(set) && f < mesh.mNumFaces; ++f) {
+        if (!is_triangle(mesh.mFaces[f], mesh))
+            continue;
+        for (int i = 0; i < 3; ++i) {
+            const aiVector3D& at = mesh.mTextureCoords[set][mesh.mFaces[f].mIndices[i]];
+            uv.emplace_back(std::isfinite(at.x) ? at.x : 0, std::isfinite(at.y) ? at.y : 0);
+        }
+    }
+    return uv;
+}
+
+void add_mesh(Scene& scene, const aiMesh& mesh, const AssimpMaterial& of_material, bool wants_uv) {
     std::vector<vec3> corners;
     corners.reserve(size_t(mesh.mNumFaces) * 3);
     for (unsigned f = 0; f < mesh.mNumFaces; ++f)
@@ -100,7 +87,12 @@ void add_mesh(Scene& scene, const aiMesh& mesh) {
                    Chunk::owning(dvec3(0), std::move(corners)), normals_from(mesh));
     MeshInfo& info = scene.meshes.back();
     info.normals_left_out = mesh.HasNormals() && info.normals.empty() ? count : 0;
-    info.texture_coordinates_left_out = mesh.HasTextureCoords(0) ? count : 0;
+    if (wants_uv)
+        info.uv = uv_from(mesh, of_material.uv_set);
+    if (info.uv.empty())
+        info.texture_coordinates_left_out = mesh.HasTextureCoords(0) ? count : 0;
+    else
+        info.cutout = of_material.cutout;
 }
 
 dvec3 through(const aiMatrix4x4& place, const aiVector3D& point) {
@@ -155,9 +147,8 @@ std::vector<std::string> textures_of(const aiScene& scene) {
                 aiString path;
                 if (scene.mMaterials[m]->GetTexture(aiTextureType(type), i, &path) != AI_SUCCESS)
                     continue;
-                std::string name = ovc::quoted(path.C_Str());
-                if (std::find(names.begin(), names.end(), name) == names.end())
-                    names.push_back(std::move(name));
+                if (std::find(names.begin(), names.end(), path.C_Str()) == names.end())
+                    names.emplace_back(path.C_Str());
             }
     return names;
 }
@@ -171,17 +162,20 @@ uint64_t other_faces(const aiScene& scene) {
     return others;
 }
 
-/// Returns a sentence for each kind of thing that the file has and the scene will not.
-std::vector<std::string> left_out_of(const aiScene& found, bool has_camera) {
+/// Returns a sentence for each kind of thing that the file has and the scene will not. textures:
+/// the names of the pictures that are not shown; lights: how many are left out.
+std::vector<std::string> left_out_of(const aiScene& found, bool has_camera,
+                                     std::vector<std::string> textures, uint64_t lights) {
     std::vector<std::string> sentences;
+    for (std::string& name : textures)
+        name = ovc::quoted(name);
     const auto leave_out = [&](uint64_t count, const char* what, const std::string& more = {}) {
         if (count > 0)
             sentences.push_back(fmt::format("{} left out{}", counted(count, what), more));
     };
-    const std::vector<std::string> textures = textures_of(found);
     leave_out(textures.size(), "texture", ": " + listed(textures));
     leave_out(found.mNumCameras - (has_camera ? 1 : 0), has_camera ? "more camera" : "camera");
-    leave_out(found.mNumLights, "light");
+    leave_out(lights, "light");
     leave_out(found.mNumAnimations, "animation", ": what moves is shown at rest");
     leave_out(other_faces(found), "face", ": they have fewer than three corners");
     return sentences;
@@ -249,21 +243,34 @@ Result<Scene> read_assimp(const std::filesystem::path& path, const ImportOptions
     Scene scene;
     scene.name = path.stem().string();
     std::vector<std::string> left_out;
+    std::vector<AssimpMaterial> materials;
     if (found) {
         scene.camera = camera_of(*found, is_gltf(path));
-        left_out = left_out_of(*found, scene.camera.has_value());
+        std::vector<std::string> textures = textures_of(*found);
+        materials = add_materials(*found, path, scene, textures);
+        const uint64_t lights = add_lights(*found, scene);
+        left_out = left_out_of(*found, scene.camera.has_value(), std::move(textures), lights);
         found = importer.ApplyPostProcessing(kSteps);
     }
     if (!found || source->is_damaged())
         return source->error(fmt::format("Assimp found: {}", importer.GetErrorString()));
     for (const std::string& sentence : left_out)
         say(options.log, LogLevel::Warning, source->error(sentence).message);
-    for (unsigned m = 0; m < found->mNumMaterials; ++m)
-        scene.materials.push_back(material_from(*found->mMaterials[m]));
-    if (scene.materials.empty())
+    if (scene.materials.empty()) {
         scene.materials.emplace_back();
-    for (unsigned m = 0; m < found->mNumMeshes; ++m)
-        add_mesh(scene, *found->mMeshes[m]);
+        materials.emplace_back();
+    }
+    const std::vector<bool> on_uv = materials_on_uv(scene);
+    for (unsigned m = 0; m < found->mNumMeshes; ++m) {
+        const unsigned named = found->mMeshes[m]->mMaterialIndex;
+        const size_t material = named < materials.size() ? named : 0;
+        add_mesh(scene, *found->mMeshes[m], materials[material],
+                 on_uv[material] || materials[material].cutout != kNone);
+    }
+    if (!scene.lights.empty()) {
+        scene.exposure = pbrt::fitting_exposure(scene);
+        pbrt::expose(scene, scene.exposure);
+    }
     if (scene.soup.triangle_count() == 0)
         say(options.log, LogLevel::Warning, source->error("it has no triangles").message);
     return scene;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The reader of MTL understands newmtl, Kd, Ks, Tf, d, Tr, Ni and illum.
+// The reader of MTL understands newmtl, Kd, Ks, Tf, d, Tr, Ni, illum and the textures of
+// mtl_textures.h.
 // Based on: Wavefront, "MTL material format", version 4.2 (1995).
 #include "importers/mesh/mtl.h"
 
@@ -90,19 +91,18 @@ bool is_texture(std::string_view keyword) {
            keyword == "disp" || keyword == "decal" || keyword == "refl" || keyword == "norm";
 }
 
-/// Returns the file's name, which stands behind options such as "-s 2 2 1" and may have blanks in
-/// it; behind options only its last word is certain.
-std::string_view picture(std::string_view rest) {
-    rest = trimmed(rest);
-    return rest.starts_with('-') ? rest.substr(rest.find_last_of(" \t") + 1) : rest;
-}
-
-void note_left_out(std::string_view keyword, std::string_view rest, LibraryMaterial& of) {
+void note_texture(std::string_view keyword, std::string_view rest, uint64_t line,
+                  LibraryMaterial& of) {
     if (keyword == "Ke")
         of.emits = parse_color(rest).value_or(vec3(0)) != vec3(0);
     if (!is_texture(keyword))
         return;
-    std::string item = fmt::format("{} {}", keyword, quoted(picture(rest)));
+    const MtlTexture texture = parse_mtl_texture(keyword, rest, line);
+    if (is_shown(texture)) {
+        of.shown.push_back(texture);
+        return;
+    }
+    std::string item = fmt::format("{} {}", keyword, ovc::quoted(texture.file));
     if (std::find(of.textures.begin(), of.textures.end(), item) == of.textures.end())
         of.textures.push_back(std::move(item));
 }
@@ -138,7 +138,7 @@ Result<std::vector<LibraryMaterial>> read_mtl(const std::filesystem::path& path,
             entries.push_back({{Material{std::string(trimmed(rest))}}});
         } else if (!entries.empty()) {
             read_line(keyword, rest, entries.back());
-            note_left_out(keyword, rest, entries.back().read);
+            note_texture(keyword, rest, source->line_number(), entries.back().read);
         }
     }
     if (source->is_damaged())
@@ -146,6 +146,7 @@ Result<std::vector<LibraryMaterial>> read_mtl(const std::filesystem::path& path,
     std::vector<LibraryMaterial> materials;
     for (Entry& entry : entries) {
         entry.finish();
+        entry.read.library = path;
         materials.push_back(std::move(entry.read));
     }
     return materials;

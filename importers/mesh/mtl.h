@@ -5,6 +5,7 @@
 #include "core/result.h"
 #include "core/scene.h"
 #include "importers/file/files_read.h"
+#include "importers/mesh/mtl_textures.h"
 
 #include <filesystem>
 #include <string>
@@ -15,15 +16,18 @@ namespace ovc {
 /// A material, and the parts of it that we leave out.
 struct LibraryMaterial {
     Material material;
-    std::vector<std::string> textures; // "map_Kd 'wood.png'", each once
-    bool emits = false;                // Ke
+    std::vector<MtlTexture> shown = {};     // for add_mtl_texture()
+    std::vector<std::string> textures = {}; // others, "refl 'sky.png'", each once
+    bool emits = false;                     // Ke
+    std::filesystem::path library = {};
 };
 
 /// Returns the materials of the file, in order. Kd becomes the color, clamped to [0, 1]; the mean
 /// of Ks becomes the mirror if illum (3 to 8) asks for reflection. If illum asks for glass (4, 6,
 /// 7, 9), light that is not mirrored passes through: 1 - d of it, else Tr, or all if neither dims
 /// it; Tf becomes the filter, and Ni the index of refraction if illum is 6 or 7. Fresnel's
-/// equations (5, 7) are left out. Other statements, and values that are no numbers, are ignored.
+/// equations (5, 7) are left out. The textures of mtl_textures.h are kept for the reader. Other
+/// statements, and values that are no numbers, are ignored.
 Result<std::vector<LibraryMaterial>> read_mtl(const std::filesystem::path& path,
                                               FilesRead* files = nullptr);
 

@@ -31,6 +31,7 @@ constexpr double kFar = 16;
 struct Corner {
     size_t vertex = 0;
     int64_t normal = -1;     // index; -1 if none is stated; may be out of range
+    int64_t uv = -1;         // likewise, where texture coordinates are kept
     bool has_normal = false; // the file states one, though it may not exist
     bool has_texture = false;
 };
@@ -40,7 +41,9 @@ struct Mesh {
     uint32_t material = 0;
     Blocks<vec3> corners;
     Blocks<vec3> normals; // as many as corners, while has_normals
+    Blocks<vec2> uv;      // as many as all corners, while wants_uv
     bool has_normals = true;
+    bool wants_uv = false;                                // a texture of its material lies on them
     uint64_t normals_stated = 0, texture_coordinates = 0; // counted in corners
     uint64_t passed_on = 0;                               // corners that a sink has got
 };
@@ -48,10 +51,14 @@ struct Mesh {
 /// How the host memory that a stream may take is shared out. Corners wait for the sink, and exist
 /// twice while they are handed on.
 struct Shares {
-    uint64_t vertices, normals, waiting, meshes;
+    uint64_t vertices, normals, uv, waiting, meshes;
 
     explicit Shares(uint64_t bytes)
-        : vertices(bytes / 2), normals(bytes / 8), waiting(bytes / 16), meshes(bytes / 4) {}
+        : vertices(bytes / 2),
+          normals(bytes / 8),
+          uv(bytes / 16),
+          waiting(bytes / 16),
+          meshes(bytes / 4) {}
 };
 
 constexpr size_t kPartOfMesh = 1 << 16; // corners of a mesh that are handed on at once, or more
@@ -67,7 +74,8 @@ public:
           streaming_(options.streaming),
           shares_(streaming_ ? streaming_->host_bytes : kUnlimited),
           vertices_(streaming_ ? streaming_->folder : "", shares_.vertices),
-          normals_(streaming_ ? streaming_->folder : "", shares_.normals) {}
+          normals_(streaming_ ? streaming_->folder : "", shares_.normals),
+          uv_(streaming_ ? streaming_->folder : "", shares_.uv) {}
 
     bool read() {
         while (const auto line = source_.line()) {
@@ -108,6 +116,7 @@ private:
     bool read_other(std::string_view keyword, std::string_view rest);
     bool read_vertex(std::string_view rest);
     bool read_normal(std::string_view rest);
+    bool read_uv(std::string_view rest);
     bool read_face(std::string_view rest);
     bool read_corner(std::string_view word);
     bool read_index(std::string_view word, std::string_view text, size_t count, size_t& index);
@@ -124,6 +133,7 @@ private:
     bool pass_on_all();
     bool check_scratch();
     void say_left_out() const;
+    std::vector<uint32_t> take_materials(Scene& scene);
 
     Source& source_;
     const std::filesystem::path& path_;
@@ -138,6 +148,9 @@ private:
 
     ScratchArray<dvec3> vertices_;
     ScratchArray<vec3> normals_;
+    ScratchArray<vec2> uv_; // while keeps_uv_
+    bool keeps_uv_ = true;  // a library has textures, or none has been read
+    bool any_textures_ = false;
     bool has_texture_coordinates_ = false;
     Box bounds_;
     std::optional<dvec3> origin_; // chosen from the vertices that precede the first face
@@ -184,8 +197,8 @@ bool ObjReader::read_line(std::string_view line) {
     if (keyword == "vn")
         return read_normal(line);
     if (keyword == "vt")
-        has_texture_coordinates_ = true;
-    else if (!keyword.empty() && keyword[0] != '#' && keyword != "s")
+        return read_uv(line);
+    if (!keyword.empty() && keyword[0] != '#' && keyword != "s")
         return read_other(keyword, line);
     return true;
 }
@@ -246,6 +259,17 @@ bool ObjReader::read_normal(std::string_view rest) {
     return true;
 }
 
+/// What is no number counts as 0: no mesh is refused for its texture coordinates.
+bool ObjReader::read_uv(std::string_view rest) {
+    has_texture_coordinates_ = true;
+    if (!keeps_uv_)
+        return true;
+    const float u = parse_float(next_word(rest)).value_or(0);
+    const float v = parse_float(next_word(rest)).value_or(0);
+    uv_.push_back({std::isfinite(u) ? u : 0, std::isfinite(v) ? v : 0});
+    return true;
+}
+
 bool ObjReader::read_face(std::string_view rest) {
     polygon_.clear();
     for (std::string_view word = next_word(rest); !word.empty() && word[0] != '#';
@@ -276,6 +300,11 @@ bool ObjReader::read_corner(std::string_view word) {
     }
     corner.has_texture =
         has_texture_coordinates_ && slash != word.npos && slash + 1 < std::min(second, word.size());
+    if (corner.has_texture && keeps_uv_) {
+        const std::string_view text = word.substr(slash + 1, second - slash - 1);
+        const int64_t uv = parse_number<int64_t>(text).value_or(0);
+        corner.uv = uv > 0 ? uv - 1 : int64_t(uv_.size()) + uv;
+    }
     polygon_.push_back(corner);
     return true;
 }
@@ -331,6 +360,11 @@ bool ObjReader::read_library(std::string_view name) {
     auto materials = read_mtl(path, files_read_);
     if (!materials)
         return false;
+    any_textures_ = any_textures_ || std::ranges::any_of(*materials, [](const LibraryMaterial& m) {
+                        return !m.shown.empty();
+                    });
+    // Those that were passed over once are not read again, and their indices would not fit.
+    keeps_uv_ = any_textures_ && (keeps_uv_ || !has_texture_coordinates_);
     libraries_.insert(path.string());
     for (LibraryMaterial& read : *materials) {
         const std::string& called = read.material.name;
@@ -385,6 +419,7 @@ bool ObjReader::add_mesh(std::string name) {
     meshes_.emplace_back();
     meshes_.back().name = std::move(name);
     meshes_.back().material = material_;
+    meshes_.back().wants_uv = keeps_uv_ && !materials_[material_].shown.empty();
     if (streaming_)
         streaming_->sink.begin_mesh();
     return true;
@@ -426,6 +461,10 @@ void ObjReader::add_corner(Mesh& to, const Corner& corner) {
     to.corners.push_back(vec3(vertices_[corner.vertex] - *origin_));
     to.normals_stated += corner.has_normal;
     to.texture_coordinates += corner.has_texture;
+    if (to.wants_uv) {
+        const bool is_there = corner.uv >= 0 && corner.uv < int64_t(uv_.size());
+        to.uv.push_back(is_there ? uv_[size_t(corner.uv)] : vec2(0));
+    }
     if (!to.has_normals)
         return;
     const bool exists = corner.normal >= 0 && corner.normal < int64_t(normals_.size());
@@ -462,10 +501,13 @@ bool ObjReader::pass_on_all() {
 }
 
 bool ObjReader::check_scratch() {
-    for (const Error* error : {vertices_.error(), normals_.error()})
-        if (error)
-            error_ = *error;
-    return !vertices_.error() && !normals_.error();
+    for (const Error* error : {vertices_.error(), normals_.error(), uv_.error()}) {
+        if (!error)
+            continue;
+        error_ = *error;
+        return false;
+    }
+    return true;
 }
 
 /// Warns of the materials that some mesh has, because a library may serve many files.
@@ -493,11 +535,35 @@ void ObjReader::say_left_out() const {
                             listed(emitters)));
 }
 
+/// Moves the materials to the scene, with the textures of those that a mesh has. Returns for each
+/// the cutout of its textures, or kNone.
+std::vector<uint32_t> ObjReader::take_materials(Scene& scene) {
+    std::vector<uint32_t> cutouts(materials_.size(), kNone);
+    std::vector<bool> used(materials_.size());
+    for (const Mesh& mesh : meshes_)
+        used[mesh.material] = true;
+    for (size_t m = 0; m < materials_.size(); ++m) {
+        const LibraryMaterial& read = materials_[m];
+        Material& material = scene.materials.emplace_back(read.material);
+        MtlMaterial to{material, {}};
+        for (const MtlTexture& texture : read.shown)
+            if (used[m])
+                add_mtl_texture(texture, read.library, scene, to);
+        if (to.cutout) {
+            cutouts[m] = uint32_t(scene.cutouts.size());
+            scene.cutouts.push_back(*to.cutout);
+        }
+    }
+    return cutouts;
+}
+
 Result<Scene> ObjReader::take() {
     vertices_.clear();
     normals_.clear();
+    uv_.clear();
     Scene scene;
     scene.name = path_.stem().string();
+    const std::vector<uint32_t> cutouts = take_materials(scene);
     bool has_triangles = false;
     for (Mesh& m : meshes_) {
         assert(m.normals.size() == (m.has_normals ? m.corners.size() : 0));
@@ -511,11 +577,14 @@ Result<Scene> ObjReader::take() {
                        m.normals.take());
         MeshInfo& mesh = scene.meshes.back();
         mesh.normals_left_out = m.has_normals ? 0 : m.normals_stated;
-        mesh.texture_coordinates_left_out = m.texture_coordinates;
+        if (m.wants_uv && m.texture_coordinates > 0) {
+            mesh.uv = m.uv.take();
+            mesh.cutout = cutouts[m.material];
+        } else {
+            mesh.texture_coordinates_left_out = m.texture_coordinates;
+        }
     }
     say_left_out();
-    for (LibraryMaterial& read : materials_)
-        scene.materials.push_back(std::move(read.material));
     if (!has_triangles)
         say(log_, LogLevel::Warning, source_.error("it has no triangles").message);
     return scene;

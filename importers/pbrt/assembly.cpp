@@ -107,10 +107,10 @@ std::vector<vec3> normals_of(const Object& object, const Run& run, bool mirrored
     return normals;
 }
 
-/// Returns texture coordinates in the order of write_corners(); none where there are no holes.
+/// Returns texture coordinates in the order of write_corners(); none where nothing wants them.
 std::vector<vec2> uv_of(const Object& object, const Run& run, bool mirrored_place) {
     std::vector<vec2> uv;
-    for (size_t i = run.first; i < run.last && run.sight.has_cutout(); ++i)
+    for (size_t i = run.first; i < run.last && run.sight.wants_uv; ++i)
         append_uv(object.shapes[i], mirrored_place, uv);
     return uv;
 }
@@ -185,7 +185,7 @@ Chunk placed_chunk(const Object& object, const Run& run, const PlacedObject& ins
 
 /// Gives an instance's mesh its texture coordinates, of which all that are not mirrored share one.
 void share_uv(const Object& object, Run& run, bool mirrored, uint32_t mesh, Scene& scene) {
-    if (!run.sight.has_cutout())
+    if (!run.sight.wants_uv)
         return;
     if (!mirrored && run.uv_from != kNone) {
         scene.meshes[mesh].uv_from = run.uv_from;

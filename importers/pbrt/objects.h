@@ -13,8 +13,8 @@ namespace ovc::pbrt {
 struct Sight {
     uint32_t cutout = kNone, shadow_cutout = kNone; // as in MeshInfo
     uint32_t seen_by = kSeenByAll;
+    bool wants_uv = false; // for a cutout, or for a texture of the material
 
-    bool has_cutout() const { return cutout != kNone || shadow_cutout != kNone; }
     bool operator==(const Sight&) const = default;
 };
 

@@ -57,7 +57,7 @@ Result<Done> StreamedShapes::add(const Shape& shape, const Place& place) {
     if (shape.mesh.size() == 0)
         return Done{};
     uv_.resize(runs_.size());
-    if (shape.sight.has_cutout()) {
+    if (shape.sight.wants_uv) {
         append_uv(shape, /* mirrored_place= */ false, uv_.back());
         kept_bytes_ += 3 * shape.mesh.size() * sizeof(vec2);
     }

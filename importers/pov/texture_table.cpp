@@ -2,6 +2,7 @@
 #include "importers/pov/texture_table.h"
 
 #include "core/texture/pattern.h"
+#include "importers/file/picture_path.h"
 #include "importers/pov/material_table.h"
 
 #include <algorithm>
@@ -37,6 +38,7 @@ static size_t key_of(const ovc::Texture& texture) {
             add(double(stop.color.rgb[i]));
     add(texture.pattern.turbulence.x);
     add(texture.pattern.frequency);
+    add(texture.image ? texture.image->picture : 0);
     return key;
 }
 
@@ -56,6 +58,12 @@ uint32_t TextureTable::number(const PatternMap& map) {
     if (const auto known = known_.find(&map); known != known_.end())
         return known->second;
     ovc::Texture texture{map.pattern, {}};
+    if (map.image_map) {
+        texture.kind = TextureKind::Image;
+        texture.image = map.image_map->image;
+        texture.image->picture =
+            add_picture(scene_, map.image_map->path, map.image_map->asked_for_at);
+    }
     for (const MapStop& stop : map.stops) {
         const Pigment& pigment = stop.texture ? stop.texture->pigment : stop.pigment;
         TextureStop made{stop.at, pigment.color};
@@ -97,6 +105,9 @@ ColorFormula color_function(const Pigment& pigment) {
 bool lets_light_through(const Pigment& pigment) {
     if (!pigment.pattern)
         return pigment.color.filter > 0 || pigment.color.transmit > 0;
+    if (const auto& map = pigment.pattern->image_map)
+        return map->image.is_transparent || map->image.filter_all > 0 ||
+               map->image.transmit_all > 0;
     const std::vector<MapStop>& stops = pigment.pattern->stops;
     return std::any_of(stops.begin(), stops.end(), [](const MapStop& stop) {
         return lets_light_through(stop.texture ? stop.texture->pigment : stop.pigment);

@@ -120,6 +120,30 @@ void fuzz_obj(const uint8_t* data, size_t size) {
     check_stream(scene, path, read_obj);
 }
 
+/// Adds patterns and pictures to the scene's materials and to its sky.
+static void add_textures(Scene& scene) {
+    Pattern marble{.kind = Pattern::Kind::Marble, .turbulence = dvec3(0.5)};
+    marble.steps.resize(2);
+    marble.steps[1].kind = TextureStep::Kind::Repeat;
+    scene.textures = {{marble, {{0, {vec3(1)}}, {1, {vec3(0.5f), 0.25f}}}},
+                      {marble, {{0, {}, 0}, {1, {}, 0}}},
+                      {marble, {{0, {}, 0}, {1, {}, 1}}}};
+    scene.pictures = {{"/a.png", "a.pbrt:1", {}}, {"b.glb, picture *0", "", {1, 2, 3}}};
+    Texture image{.kind = TextureKind::Image, .on_uv = true, .image = ImageTexture{.picture = 1}};
+    image.image->projection = ImageTexture::Projection::Torus;
+    image.image->channel = ImageTexture::Channel::Mask;
+    scene.textures.push_back(image);
+    scene.textures.push_back(
+        {.stops = {{0, {}, 0}, {0, {}, 3}, {0, {vec3(1)}}}, .kind = TextureKind::Mix});
+    scene.materials[0].texture = PlacedTexture{4};
+    scene.materials[1].texture = PlacedTexture{1};
+    scene.materials[1].maps = MaterialMaps{.width = 3};
+    scene.materials[1].normal_map = NormalMap{.kind = NormalMap::Kind::Texels, .texture = 3};
+    scene.materials[1].bump = Bump{.kind = Bump::Kind::Dents};
+    scene.materials.push_back({.name = "mixed", .under = 1, .mix = PlacedTexture{2}});
+    scene.background.layers = {PlacedTexture{0}};
+}
+
 Scene scene_with_everything() {
     Scene scene;
     scene.name = "everything";
@@ -127,16 +151,7 @@ Scene scene_with_everything() {
     scene.materials.push_back({"shiny", vec3(0.1f, 0.2f, 0.3f), 0.5f, 0.25f, vec3(0.5f), 1.5,
                                Finish{vec3(0.1f)},
                                Optics{.diffuse = vec3(0.3f), .boundary = Optics::Boundary::Thin}});
-    Pattern marble{.kind = Pattern::Kind::Marble, .turbulence = dvec3(0.5)};
-    marble.steps.resize(2);
-    marble.steps[1].kind = TextureStep::Kind::Repeat;
-    scene.textures = {{marble, {{0, {vec3(1)}}, {1, {vec3(0.5f), 0.25f}}}},
-                      {marble, {{0, {}, 0}, {1, {}, 0}}},
-                      {marble, {{0, {}, 0}, {1, {}, 1}}}};
-    scene.materials[1].texture = PlacedTexture{1};
-    scene.materials[1].bump = Bump{.kind = Bump::Kind::Dents};
-    scene.materials.push_back({.name = "mixed", .under = 1, .mix = PlacedTexture{2}});
-    scene.background.layers = {PlacedTexture{0}};
+    add_textures(scene);
     const std::vector<vec3> corners = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0},
                                        {0, 0, 1}, {1, 0, 1}, {0, 1, 1}};
     scene.add_mesh("a", 0, Chunk::owning(dvec3(0), corners), std::vector<vec3>(6, vec3(0, 0, 1)));
@@ -145,7 +160,8 @@ Scene scene_with_everything() {
     scene.meshes[1].turn = dmat3(2);
     scene.show(1, kSeenByCamera);
     scene.cutouts = {{.width = 2, .height = 1, .opacity = {0, 255}},
-                     {.width = 1, .height = 1, .opacity = {9}, .smooth = true}};
+                     {.width = 1, .height = 1, .opacity = {9}, .smooth = true},
+                     {.texture = 3, .threshold = 0.5f}};
     scene.meshes[0].cutout = 0;
     scene.meshes[0].uv.assign(6, vec2(0.25f, 1));
     scene.meshes[1].shadow_cutout = 1;

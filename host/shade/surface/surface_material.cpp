@@ -3,20 +3,67 @@
 
 #include "core/texture/pattern.h"
 
+#include <algorithm>
+
 namespace ovc {
 
 /// Light of less than this share is not looked for in further coats.
 static constexpr float kMinCoat = 1 / 4096.0f;
 
-static void take_color(const Scene& scene, const Material& material, const dvec3& at,
+/// The normal stays on the side that is seen.
+static void tilt_by_map(const Scene& scene, const NormalMap& map, const TexturePoint& point,
+                        SurfacePoint& surface) {
+    const double side = surface.entering ? 1 : -1;
+    const dvec3 normal = side * tilted(scene.textures, map, point, side * surface.normal);
+    if (glm::dot(normal, surface.geometric_normal) > 0)
+        surface.normal = normal;
+}
+
+static void take_maps(const Scene& scene, const MaterialMaps& maps, const TexturePoint& point,
+                      MapValues& values) {
+    const auto color = [&](uint32_t map) {
+        return map == kNone ? vec3(1) : glm::max(color_at(scene.textures, map, point).rgb, vec3(0));
+    };
+    const auto mean = [&](uint32_t map) {
+        const vec3 c = color(map);
+        return (c.x + c.y + c.z) / 3;
+    };
+    values.reflection = color(maps.reflection);
+    values.emission = color(maps.emission);
+    values.width = mean(maps.width);
+    if (maps.metallic != kNone)
+        values.metal = std::min(mean(maps.metallic), 1.0f);
+}
+
+/// The share that a surface reflects head on where it is no metal: that of an index of 1.5.
+static constexpr float kPlainReflection = 0.04f;
+
+Optics optics_at(const SurfacePoint& surface) {
+    Optics optics = *surface.material->optics;
+    if (surface.material->texture)
+        optics.diffuse = surface.color;
+    if (const float metal = surface.maps.metal; metal >= 0) {
+        optics.boundary = Optics::Boundary::Metal;
+        optics.reflection = glm::mix(vec3(kPlainReflection), surface.color, metal);
+        optics.diffuse = (1 - metal) * surface.color;
+    }
+    optics.reflection *= surface.maps.reflection;
+    optics.width *= surface.maps.width;
+    optics.emission *= surface.maps.emission;
+    return optics;
+}
+
+static void take_color(const Scene& scene, const Material& material, const TexturePoint& point,
                        SurfacePoint& surface) {
     surface.material = &material;
     if (material.bump)
-        surface.normal = bumped(scene.textures, *material.bump, at, surface.normal);
+        surface.normal = bumped(scene.textures, *material.bump, point.at, surface.normal);
+    if (material.normal_map)
+        tilt_by_map(scene, *material.normal_map, point, surface);
     surface.color = material.color;
     if (material.texture) {
         const TransparentColor color =
-            color_at(scene.textures, material.texture->texture, material.texture->at(at));
+            color_at(scene.textures, material.texture->texture, material.texture->at(point));
         surface.color = color.rgb;
         if (material.finish) {
             surface.opacity = glm::clamp(color.opacity(), 0.0f, 1.0f);
@@ -24,33 +71,35 @@ static void take_color(const Scene& scene, const Material& material, const dvec3
         }
     } else if (material.finish)
         surface.through = material.transmission * material.filter;
+    if (material.maps)
+        take_maps(scene, *material.maps, point, surface.maps);
 }
 
-static vec3 add_mix(const Scene& scene, const PlacedTexture& placed, const dvec3& at,
+static vec3 add_mix(const Scene& scene, const PlacedTexture& placed, const TexturePoint& point,
                     const vec3& weight, const SurfacePoint& bare, std::vector<Coat>& coats);
 
 /// Adds the coats of a material, seen with this weight, and returns the share of light that goes
 /// through all of them.
-static vec3 add_coats(const Scene& scene, uint32_t number, const dvec3& at, const vec3& weight,
-                      const SurfacePoint& bare, std::vector<Coat>& coats) {
+static vec3 add_coats(const Scene& scene, uint32_t number, const TexturePoint& point,
+                      const vec3& weight, const SurfacePoint& bare, std::vector<Coat>& coats) {
     const Material& material = scene.materials[number];
     vec3 through;
     if (material.mix)
-        through = add_mix(scene, *material.mix, at, weight, bare, coats);
+        through = add_mix(scene, *material.mix, point, weight, bare, coats);
     else {
         Coat& coat = coats.emplace_back(Coat{bare, weight});
-        take_color(scene, material, at, coat.surface);
+        take_color(scene, material, point, coat.surface);
         through = coat.surface.through;
     }
     if (material.under == kNone || max_component(weight * through) < kMinCoat)
         return through;
-    return through * add_coats(scene, material.under, at, weight * through, bare, coats);
+    return through * add_coats(scene, material.under, point, weight * through, bare, coats);
 }
 
-static vec3 add_mix(const Scene& scene, const PlacedTexture& placed, const dvec3& at,
+static vec3 add_mix(const Scene& scene, const PlacedTexture& placed, const TexturePoint& point,
                     const vec3& weight, const SurfacePoint& bare, std::vector<Coat>& coats) {
     const Texture& mix = scene.textures[placed.texture];
-    const PatternPlace place = evaluate(mix.pattern, placed.at(at));
+    const PatternPlace place = evaluate(mix.pattern, placed.at(point).at);
     const Between where = between(
         mix.stops.size(), [&](size_t i) { return mix.stops[i].at; }, place.value,
         is_discrete(mix.pattern.kind));
@@ -59,26 +108,27 @@ static vec3 add_mix(const Scene& scene, const PlacedTexture& placed, const dvec3
     for (int i = 0; i < 2; ++i)
         if (shares[i] > 0)
             through +=
-                shares[i] * add_coats(scene, mix.stops[i ? where.second : where.first].texture, at,
-                                      shares[i] * weight, bare, coats);
+                shares[i] * add_coats(scene, mix.stops[i ? where.second : where.first].texture,
+                                      point, shares[i] * weight, bare, coats);
     return through;
 }
 
-void take_material(const Scene& scene, uint32_t material, const dvec3& at, SurfacePoint& surface) {
+void take_material(const Scene& scene, uint32_t material, const TexturePoint& point,
+                   SurfacePoint& surface) {
     static const Material kPlain;
     if (material >= scene.materials.size()) {
-        take_color(scene, kPlain, at, surface);
+        take_color(scene, kPlain, point, surface);
         return;
     }
     const Material& own = scene.materials[material];
     if (own.under == kNone && !own.mix) {
-        take_color(scene, own, at, surface);
+        take_color(scene, own, point, surface);
         return;
     }
     std::vector<Coat> coats;
     const SurfacePoint bare = surface;
-    take_color(scene, own, at, surface);
-    surface.through = add_coats(scene, material, at, vec3(1), bare, coats);
+    take_color(scene, own, point, surface);
+    surface.through = add_coats(scene, material, point, vec3(1), bare, coats);
     surface.color = vec3(0);
     for (const Coat& coat : coats)
         surface.color += coat.weight * coat.surface.opacity * coat.surface.color;

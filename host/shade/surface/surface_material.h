@@ -7,7 +7,9 @@
 namespace ovc {
 
 /// Sets what the surface takes from Scene::materials[material], or from a plain one where there is
-/// no such material: material, color, opacity, through, coats. at: the point in the world.
-void take_material(const Scene& scene, uint32_t material, const dvec3& at, SurfacePoint& surface);
+/// no such material: material, color, maps, opacity, through, coats; and tilts its
+/// normal. point: in the world.
+void take_material(const Scene& scene, uint32_t material, const TexturePoint& point,
+                   SurfacePoint& surface);
 
 } // namespace ovc

@@ -118,7 +118,7 @@ private:
 
     StateStack state_;
     std::unordered_map<std::string, Transforms> systems_;
-    Textures textures_{diagnostics_};
+    Textures textures_{diagnostics_, tokens_};
     Alphas alphas_{textures_, tokens_, diagnostics_};
     Materials materials_{textures_, diagnostics_};
     Lights lights_{textures_, diagnostics_};

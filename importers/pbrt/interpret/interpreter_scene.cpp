@@ -27,7 +27,7 @@ bool Interpreter::shape() {
                          diagnostics_,
                          left,
                          options_.tolerance.value_or(kTolerance),
-                         sight && sight->has_cutout()};
+                         sight && sight->wants_uv};
     // Objects, holes and area lights need triangles at hand.
     if (streamed_ && building_.empty() && !state_.now.emission && !request.wants_uv)
         request.streaming = options_.streaming;
@@ -45,6 +45,11 @@ std::optional<Sight> Interpreter::sight_of(const Parameters& parameters) {
         return std::nullopt;
     const Alpha shadow = alphas_.of(parameters, "shadowalpha");
     Sight sight{alpha.cutout, shadow.cutout};
+    const uint32_t material = state_.now.material;
+    if (sight.cutout == kNone && !state_.now.emission)
+        sight.cutout = alphas_.of_texture(materials_.holes(material));
+    sight.wants_uv = sight.cutout != kNone || sight.shadow_cutout != kNone ||
+                     (!state_.now.emission && materials_.wants_uv(material));
     if (shadow.is_zero)
         sight.seen_by &= ~uint32_t(kShadowsLights | kShadowsEmitters);
     if (state_.now.emission && building_.empty()) // the lights that stand for it lie in it
@@ -128,9 +133,10 @@ bool Interpreter::texture() {
     if (!read_text(name) || !read_text(value) || !read_typed(type, parameters))
         return false;
     const bool is_float = value == "float";
-    textures_.define(name, is_float, type, parameters, place_);
     if (is_float)
         alphas_.define(name, type, parameters, place_);
+    textures_.define(
+        name, {type, std::move(parameters), place_, now_at(state_.now.transforms), is_float});
     return true;
 }
 
@@ -212,6 +218,7 @@ void Interpreter::fill(Scene& scene) {
     scene.moves = moves_;
     scene.materials = materials_.take();
     scene.cutouts = alphas_.take(/* partial= */ !world_ended_);
+    textures_.take(scene);
     if (film_.has_size)
         scene.size = film_.size;
     if (camera_)

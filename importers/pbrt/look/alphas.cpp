@@ -81,13 +81,13 @@ void Alphas::define(const std::string& name, const std::string& type, const Para
     pattern.place = place;
     const auto [at, is_new] = patterns_.try_emplace(name);
     if (!is_new)
-        tell_unless_used(at->second);
+        tell_unless_used(name, at->second);
     at->second = std::move(pattern);
 }
 
 /// What is not evaluated has been told of already where it was asked for as alpha.
-void Alphas::tell_unless_used(const Pattern& pattern) const {
-    if (!pattern.used)
+void Alphas::tell_unless_used(const std::string& name, const Pattern& pattern) const {
+    if (!pattern.used && !textures_.is_used(name))
         textures_.tell_mean(pattern.type, pattern.place);
 }
 
@@ -160,6 +160,15 @@ Alpha Alphas::of(const Parameters& parameters, std::string_view name) {
     return {false, at->second};
 }
 
+uint32_t Alphas::of_texture(uint32_t texture) {
+    if (texture == kNoTexture)
+        return kNone;
+    const auto [at, is_new] = textured_.try_emplace(texture, uint32_t(cutouts_.size()));
+    if (is_new)
+        cutouts_.push_back({.texture = texture});
+    return at->second;
+}
+
 uint32_t Alphas::make(Pattern& pattern) {
     if (pattern.made)
         return *pattern.made;
@@ -206,9 +215,9 @@ bool Alphas::read_picture(Pattern& pattern) {
 
 std::vector<Cutout> Alphas::take(bool partial) {
     for (const auto& [name, pattern] : patterns_)
-        tell_unless_used(pattern);
+        tell_unless_used(name, pattern);
     for (Cutout& cutout : cutouts_)
-        cutout.partial = partial;
+        cutout.partial = partial || cutout.texture != kNoTexture;
     return std::move(cutouts_);
 }
 

@@ -29,6 +29,9 @@ public:
     /// which then makes no holes.
     Alpha of(const Parameters& parameters, std::string_view name);
 
+    /// Returns the cutout of a texture of the scene; kNone: there is no such texture.
+    uint32_t of_texture(uint32_t texture);
+
     /// Returns all cutouts, and warns of patterns that no alpha is made of. partial: as in Cutout.
     std::vector<Cutout> take(bool partial);
 
@@ -52,13 +55,14 @@ private:
     Pattern scaled(const Parameters& parameters) const;
     uint32_t make(Pattern& pattern);
     bool read_picture(Pattern& pattern);
-    void tell_unless_used(const Pattern& pattern) const;
+    void tell_unless_used(const std::string& name, const Pattern& pattern) const;
 
     const Textures& textures_;
     const Tokens& tokens_;
     Diagnostics& diagnostics_;
     std::map<std::string, Pattern> patterns_;
-    std::map<double, uint32_t> constants_; // the cutouts of constant alphas
+    std::map<double, uint32_t> constants_;  // the cutouts of constant alphas
+    std::map<uint32_t, uint32_t> textured_; // those of textures of the scene
     std::vector<Cutout> cutouts_;
 };
 

@@ -119,6 +119,9 @@ void expose(Scene& scene, float exposure) {
         light.color *= exposure;
     scene.background.horizon *= exposure;
     scene.background.zenith *= exposure;
+    for (const PlacedTexture& layer : scene.background.layers)
+        if (auto& image = scene.textures[layer.texture].image)
+            image->scale *= exposure;
     for (Material& material : scene.materials) {
         if (material.finish && material.finish->diffuse == 0)
             material.finish->ambient *= exposure;

@@ -53,7 +53,7 @@ void Lights::add(const std::string& type, const Parameters& parameters, const dm
     if (type == "distant")
         return add_distant(parameters, to_world);
     if (type == "infinite" || type == "exinfinite")
-        return add_infinite(parameters, place);
+        return add_infinite(parameters, to_world, place);
     if (type == "goniometric") {
         diagnostics_.approximate("goniometric", place, "goniometric lights shine evenly all ways");
         return add_point(parameters, to_world);
@@ -107,17 +107,45 @@ void Lights::add_distant(const Parameters& p, const dmat4& to_world) {
     lights_.push_back(light);
 }
 
-void Lights::add_infinite(const Parameters& p, const Place& place) {
+/// A map is a layer before a sky of even colours, which Whitted's model takes ambient light from.
+void Lights::add_infinite(const Parameters& p, const dmat4& to_world, const Place& place) {
     const vec3 radiance = scaled(p, "L", vec3(1));
     const bool has_map = p.find("mapname") || p.find("filename");
     if (has_map)
         diagnostics_.approximate("environment map", place,
-                                 "environment maps are shown as a sky of even colours");
+                                 "environment maps light surfaces as a sky of even colours without "
+                                 "--integrator path");
     const Background colors; // the default sky, of luminance about 1/2 to 1
     if (!sky_)
         sky_ = Background{vec3(0), vec3(0)};
     sky_->horizon += radiance * (has_map ? colors.horizon : vec3(1));
     sky_->zenith += radiance * (has_map ? colors.zenith : vec3(1));
+    if (has_map)
+        add_map(p, radiance, to_world, place);
+}
+
+/// v3's "mapname" is a map of longitudes and latitudes, v4's "filename" an octahedral one, whose
+/// first row is at t = 0.
+void Lights::add_map(const Parameters& p, const vec3& radiance, const dmat4& to_world,
+                     const Place& place) {
+    const bool is_octahedral = !p.find("mapname");
+    ImageTexture map;
+    map.projection =
+        is_octahedral ? ImageTexture::Projection::Octahedral : ImageTexture::Projection::LatLong;
+    if (is_octahedral)
+        map.to_picture = {dvec3(1, 0, 0), dvec3(0, -1, 1)};
+    map.beyond_s = is_octahedral ? Beyond::Clamp : Beyond::Repeat;
+    map.beyond_t = Beyond::Clamp;
+    map.filter = TexelFilter::Smooth;
+    map.scale = radiance;
+    map.otherwise = {vec3(0), 0, 1}; // the sky behind it is seen
+    const uint32_t texture = textures_.image(p.text(is_octahedral ? "filename" : "mapname"), place,
+                                             map, /* on_uv= */ false);
+    const dmat3 turn = glm::inverse(dmat3(to_world));
+    PlacedTexture layer{texture, {}};
+    for (int row = 0; row < 3; ++row)
+        layer.to_texture[size_t(row)] = dvec4(turn[0][row], turn[1][row], turn[2][row], 0);
+    sky_->layers.push_back(layer);
 }
 
 std::optional<Emission> Lights::emission(const Parameters& p) const {

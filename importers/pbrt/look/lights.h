@@ -16,7 +16,7 @@ struct Emission {
 
 class Lights {
 public:
-    Lights(const Textures& textures, Diagnostics& diagnostics)
+    Lights(Textures& textures, Diagnostics& diagnostics)
         : textures_(textures), diagnostics_(diagnostics) {}
 
     void add(const std::string& type, const Parameters& parameters, const dmat4& to_world,
@@ -33,13 +33,15 @@ private:
     void add_point(const Parameters& parameters, const dmat4& to_world);
     void add_spot(const Parameters& parameters, const dmat4& to_world);
     void add_distant(const Parameters& parameters, const dmat4& to_world);
-    void add_infinite(const Parameters& parameters, const Place& place);
+    void add_infinite(const Parameters& parameters, const dmat4& to_world, const Place& place);
+    void add_map(const Parameters& parameters, const vec3& radiance, const dmat4& to_world,
+                 const Place& place);
 
-    const Textures& textures_;
+    Textures& textures_;
     Diagnostics& diagnostics_;
     std::vector<Light> lights_;
     std::vector<Light> area_lights_;
-    std::optional<Background> sky_;
+    std::optional<Background> sky_; // with its maps as layers
     vec3 sky_mean_{0};
     bool any_ = false; // whether the file has a light of any kind
 };

@@ -4,6 +4,7 @@
 #include "importers/pbrt/look/material_families.h"
 
 #include "core/fresnel.h"
+#include "importers/file/picture_path.h"
 
 #include <cassert>
 
@@ -65,10 +66,34 @@ void add_coat(Material& m, const vec3& color) {
     m.finish->grazing_reflection = color;
 }
 
+/// Gives the material the texture of its color, times `factor`.
+void take_color(const MaterialContext& c, std::string_view name, const vec3& factor, Material& m) {
+    if (const auto texture = c.texture(name))
+        m.texture = placed_in_world(c.textures.product(*texture, factor));
+}
+
+/// Gives it the texture of the share that its boundary reflects, whose mean is then no part of it.
+void take_reflection(const MaterialContext& c, std::string_view name, Material& m) {
+    const auto texture = c.texture(name);
+    if (!texture)
+        return;
+    if (!m.maps)
+        m.maps.emplace();
+    m.maps->reflection = *texture;
+    const float mean_color = mean(c.color(name, 0.5f));
+    if (!(mean_color > 0))
+        return;
+    m.optics->reflection /= mean_color;
+    m.finish->specular /= mean_color;
+    m.finish->reflection /= mean_color;
+    m.finish->grazing_reflection /= mean_color;
+}
+
 /// Reads the color from the parameter `reflectance`, whose name depends on the version.
 Material matte(const MaterialContext& c, std::string_view reflectance) {
     Material m;
     m.color = c.color(reflectance, 0.5f);
+    take_color(c, reflectance, vec3(1), m);
     m.finish = plain_finish();
     m.optics = Optics{.diffuse = m.color};
     return m;
@@ -103,11 +128,13 @@ Material make_plastic(const MaterialContext& c) {
     const bool v4 = c.p.find("reflectance") != nullptr;
     Material m;
     m.color = v4 ? c.color("reflectance", 0.5f) : c.color("Kd", 0.25f);
+    take_color(c, v4 ? "reflectance" : "Kd", vec3(1), m);
     m.finish = plain_finish();
     const vec3 coat = c.color("Ks", 0.25f);
     const double width = roughness_of(c, 0.1);
     add_highlight(*m.finish, mean(coat), width);
     m.optics = varnished(m.color, coat, kPlasticIor, width);
+    take_reflection(c, "Ks", m);
     return m;
 }
 
@@ -131,6 +158,7 @@ Material make_mirror(const MaterialContext& c) {
     m.finish->diffuse = 0;
     m.finish->reflection = m.finish->grazing_reflection = c.color("Kr", 0.9f);
     m.optics = Optics{.boundary = Optics::Boundary::Mirror, .reflection = m.finish->reflection};
+    take_reflection(c, "Kr", m);
     return m;
 }
 
@@ -205,13 +233,17 @@ Material metal(const vec3& color, double width) {
 }
 
 Material make_metal(const MaterialContext& c) {
-    return metal(metal_of(c), roughness_of(c, 0.01));
+    Material m = metal(metal_of(c), roughness_of(c, 0.01));
+    take_reflection(c, "reflectance", m);
+    return m;
 }
 
 Material make_conductor(const MaterialContext& c) {
     const bool coated = c.p.find("conductor.roughness") != nullptr;
-    return metal(metal_of(c),
-                 coated ? as_width(c, c.number("conductor.roughness", 0)) : roughness_of(c, 0));
+    Material m = metal(metal_of(c), coated ? as_width(c, c.number("conductor.roughness", 0))
+                                           : roughness_of(c, 0));
+    take_reflection(c, "reflectance", m);
+    return m;
 }
 
 Material make_shiny_metal(const MaterialContext& c) {
@@ -223,6 +255,7 @@ Material make_uber(const MaterialContext& c) {
     const vec3 opacity = is_masked ? vec3(1) : c.color("opacity", 1);
     Material m;
     m.color = c.color("Kd", 0.25f) * opacity;
+    take_color(c, "Kd", opacity, m);
     m.finish = plain_finish();
     const vec3 ks = c.color("Ks", 0.25f) * opacity;
     const double width = roughness_of(c, 0.1);
@@ -234,6 +267,7 @@ Material make_uber(const MaterialContext& c) {
     m.ior = stated_ior(c).value_or(1.5);
     m.optics =
         mean(kr) > 0 ? varnished(m.color, kr, m.ior, 0) : varnished(m.color, ks, m.ior, width);
+    take_reflection(c, mean(kr) > 0 ? "Kr" : "Ks", m);
     const vec3 through = mean(kt) > 0 ? kt : vec3(1) - opacity;
     if (mean(through) > 0) {
         m.transmission = 1;
@@ -333,11 +367,37 @@ constexpr Family kFamilies[] = {{"matte", make_matte},
 
 } // namespace
 
+/// Adds what tilts normals: heights in the units of the world, or v4's pictures of normals.
+static void take_relief(const MaterialContext& c, Material& m) {
+    for (const std::string_view name : {"bumpmap", "displacement"})
+        if (const auto texture = c.texture(name); texture && c.textures.is_on_uv(*texture))
+            m.normal_map = NormalMap{NormalMap::Kind::Height, *texture};
+        else if (texture)
+            c.diagnostics.approximate("solid bumps", c.place,
+                                      "bumps that do not lie on texture coordinates are left out");
+    const std::string normals = c.p.text("normalmap");
+    if (normals.empty())
+        return;
+    ImageTexture image;
+    image.gamma = 1;
+    image.otherwise = {vec3(0.5f, 0.5f, 1)};
+    m.normal_map = NormalMap{NormalMap::Kind::Tangent,
+                             c.textures.image(normals, c.place, image, /* on_uv= */ true)};
+}
+
 std::optional<Material> material_of(std::string_view type, const MaterialContext& context) {
-    for (const Family& family : kFamilies)
-        if (family.name == type)
-            return family.make(context);
+    for (const Family& family : kFamilies) {
+        if (family.name != type)
+            continue;
+        Material material = family.make(context);
+        take_relief(context, material);
+        return material;
+    }
     return std::nullopt;
+}
+
+std::optional<uint32_t> holes_of(std::string_view type, const MaterialContext& context) {
+    return type == "uber" ? context.texture("opacity") : std::nullopt;
 }
 
 } // namespace ovc::pbrt

@@ -32,27 +32,35 @@ static std::string key_of(const Material& m) {
                        finish.ambient.x);
 }
 
-uint32_t Materials::add(Material material) {
+bool Materials::is_on_uv(const Material& material) const {
+    const MaterialMaps maps = material.maps.value_or(MaterialMaps{});
+    return (material.texture && textures_.is_on_uv(material.texture->texture)) ||
+           (maps.reflection != kNone && textures_.is_on_uv(maps.reflection)) || material.normal_map;
+}
+
+uint32_t Materials::add(Material material, uint32_t holes) {
     std::string key = key_of(material);
     const auto [first, last] = by_key_.equal_range(key);
     for (auto at = first; at != last; ++at)
-        if (all_[at->second] == material)
+        if (all_[at->second] == material && holes_[at->second] == holes)
             return at->second;
     by_key_.emplace(std::move(key), uint32_t(all_.size()));
+    holes_.push_back(holes);
+    wants_uv_.push_back(is_on_uv(material));
     all_.push_back(std::move(material));
     return uint32_t(all_.size() - 1);
 }
 
-Material Materials::mapped(const std::string& type, const Parameters& parameters,
-                           const Place& place) {
+Materials::Mapped Materials::mapped(const std::string& type, const Parameters& parameters,
+                                    const Place& place) {
     if (type == "mix")
-        return mix(parameters, place);
+        return {mix(parameters, place)};
     const MaterialContext context{textures_, parameters, diagnostics_, place};
     if (std::optional<Material> material = material_of(type, context))
-        return std::move(*material);
+        return {std::move(*material), holes_of(type, context).value_or(kNoTexture)};
     diagnostics_.missing("material " + type, place,
                          fmt::format("materials {} become matte", ovc::quoted(type)));
-    return make_matte(context);
+    return {make_matte(context)};
 }
 
 /// Mixes part by part; the material of the larger share decides what cannot be mixed.
@@ -87,16 +95,16 @@ Material Materials::mix(const Parameters& parameters, const Place& place) {
 
 uint32_t Materials::make(const std::string& type, const Parameters& parameters,
                          const Place& place) {
-    Material material = mapped(type, parameters, place);
-    material.name = type;
-    return add(std::move(material));
+    Mapped made = mapped(type, parameters, place);
+    made.material.name = type;
+    return add(std::move(made.material), made.holes);
 }
 
 void Materials::define(const std::string& name, const Parameters& parameters, const Place& place) {
     const std::string type = parameters.text("type", "matte");
-    Material material = mapped(type, parameters, place);
-    material.name = name;
-    named_[name] = add(std::move(material));
+    Mapped made = mapped(type, parameters, place);
+    made.material.name = name;
+    named_[name] = add(std::move(made.material), made.holes);
 }
 
 uint32_t Materials::named(const std::string& name, const Place& place) {

@@ -11,7 +11,7 @@ namespace ovc::pbrt {
 
 class Materials {
 public:
-    Materials(const Textures& textures, Diagnostics& diagnostics)
+    Materials(Textures& textures, Diagnostics& diagnostics)
         : textures_(textures), diagnostics_(diagnostics) {}
 
     /// Returns the material of a Material directive, as an index into all(); equal materials share
@@ -26,16 +26,29 @@ public:
     uint32_t emitter(uint32_t surface, const vec3& radiance, bool two_sided);
 
     const std::vector<Material>& all() const { return all_; }
+    /// Returns the texture that says where the material has holes; kNoTexture: it has none.
+    uint32_t holes(uint32_t material) const { return holes_[material]; }
+    /// Returns whether the material has a use for texture coordinates.
+    bool wants_uv(uint32_t material) const { return wants_uv_[material]; }
     std::vector<Material> take() { return std::move(all_); }
 
 private:
-    Material mapped(const std::string& type, const Parameters& parameters, const Place& place);
-    Material mix(const Parameters& parameters, const Place& place);
-    uint32_t add(Material material);
+    /// A material that is to get its name, and its holes().
+    struct Mapped {
+        Material material;
+        uint32_t holes = kNoTexture;
+    };
 
-    const Textures& textures_;
+    Mapped mapped(const std::string& type, const Parameters& parameters, const Place& place);
+    Material mix(const Parameters& parameters, const Place& place);
+    uint32_t add(Material material, uint32_t holes = kNoTexture);
+    bool is_on_uv(const Material& material) const;
+
+    Textures& textures_;
     Diagnostics& diagnostics_;
     std::vector<Material> all_{Material{"matte", vec3(0.5f)}}; // the first before any Material
+    std::vector<uint32_t> holes_{kNoTexture};                  // of each material
+    std::vector<bool> wants_uv_{false};
     std::unordered_map<std::string, uint32_t> named_;
     std::unordered_multimap<std::string, uint32_t> by_key_; // indices into all_, to find equals
 };

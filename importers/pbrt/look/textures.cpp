@@ -3,6 +3,7 @@
 // patterns.
 #include "importers/pbrt/look/textures.h"
 
+#include "importers/file/picture_path.h"
 #include "importers/file/text.h"
 
 #include <fmt/format.h>
@@ -13,14 +14,28 @@ static bool is_plain(const std::string& type) {
     return type == "constant" || type == "scale" || type == "mix";
 }
 
-void Textures::define(const std::string& name, bool is_float, const std::string& type,
-                      const Parameters& parameters, const Place& place) {
-    if (!is_float)
-        tell_mean(type, place);
-    bool is_made_of_patterns = false;
-    for (const Parameter& p : parameters.all())
-        is_made_of_patterns = is_made_of_patterns || is_pattern(parameters, p.name);
-    means_[name] = {mean(type, parameters), !is_plain(type) || is_made_of_patterns};
+/// Whether make() knows textures of this class, if their mapping and their parts are among those
+/// that it knows too.
+static bool is_evaluated(const TextureRequest& request) {
+    if (request.type == "imagemap")
+        return !request.parameters.text("filename").empty();
+    return request.type == "checkerboard" || is_plain(request.type);
+}
+
+void Textures::define(const std::string& name, TextureRequest request) {
+    if (!request.is_float && !is_evaluated(request))
+        tell_mean(request.type, request.place);
+    Definition definition;
+    definition.mean = mean(request.type, request.parameters);
+    definition.is_pattern = !is_plain(request.type);
+    for (const Parameter& p : request.parameters.all()) {
+        definition.is_pattern = definition.is_pattern || is_pattern(request.parameters, p.name);
+        if (const Definition* const part = find(request.parameters, p.name))
+            definition.parts[p.name] = size_t(part - definitions_.data());
+    }
+    definition.request = std::move(request);
+    by_name_[name] = definitions_.size();
+    definitions_.push_back(std::move(definition));
 }
 
 void Textures::tell_mean(const std::string& type, const Place& place) const {
@@ -30,12 +45,24 @@ void Textures::tell_mean(const std::string& type, const Place& place) const {
             fmt::format("textures {} are shown by their mean", ovc::quoted(type)));
 }
 
-bool Textures::is_pattern(const Parameters& parameters, std::string_view name) const {
+const Textures::Definition* Textures::find(const Parameters& parameters,
+                                           std::string_view name) const {
     const Parameter* p = parameters.find(name);
+    // v1 may give a texture's name for a float or a colour.
     if (!p || (p->kind != Kind::Texture && p->kind != Kind::String) || p->strings.empty())
-        return false;
-    const auto at = means_.find(p->strings[0]);
-    return at != means_.end() && at->second.is_pattern;
+        return nullptr;
+    const auto at = by_name_.find(p->strings[0]);
+    return at == by_name_.end() ? nullptr : &definitions_[at->second];
+}
+
+bool Textures::is_pattern(const Parameters& parameters, std::string_view name) const {
+    const Definition* const found = find(parameters, name);
+    return found && found->is_pattern;
+}
+
+bool Textures::is_used(const std::string& name) const {
+    const auto at = by_name_.find(name);
+    return at != by_name_.end() && definitions_[at->second].made.has_value();
 }
 
 vec3 Textures::mean(const std::string& type, const Parameters& p) const {
@@ -63,11 +90,9 @@ vec3 Textures::color(const Parameters& parameters, std::string_view name,
     const Parameter* p = parameters.find(name);
     if (!p)
         return otherwise;
-    // v1 may give a texture's name for a float or a colour.
     if (p->kind == Kind::Texture || p->kind == Kind::String) {
-        const auto at = p->strings.empty() ? means_.end() : means_.find(p->strings[0]);
-        if (at != means_.end())
-            return at->second.color;
+        if (const Definition* const found = find(parameters, name))
+            return found->mean;
         diagnostics_.missing("texture of that name", p->place,
                              fmt::format("there is no texture {}",
                                          ovc::quoted(p->strings.empty() ? "" : p->strings[0])));

@@ -1,21 +1,35 @@
 // SPDX-License-Identifier: Apache-2.0
-// Textures replaces each texture by its mean, because no material of ours has a texture.
+// Textures keeps pbrt's textures by their names, and makes those of the scene that materials use:
+// pictures, products, mixes and checkerboards. Others are replaced by their mean.
 #pragma once
 
+#include "importers/pbrt/interpret/tokens.h"
+#include "importers/pbrt/interpret/transform.h"
 #include "importers/pbrt/look/spectrum.h"
 
+#include <map>
+#include <optional>
 #include <unordered_map>
 
 namespace ovc::pbrt {
 
+/// What a Texture directive says.
+struct TextureRequest {
+    std::string type; // its class, "scale"
+    Parameters parameters;
+    Place place;
+    dmat4 to_world{1}; // of its own space
+    bool is_float = false;
+};
+
 class Textures {
 public:
-    explicit Textures(Diagnostics& diagnostics) : diagnostics_(diagnostics) {}
+    Textures(Diagnostics& diagnostics, const Tokens& tokens)
+        : diagnostics_(diagnostics), tokens_(tokens) {}
 
-    /// Adds the texture of a Texture directive, with its class as `type` ("scale"). Warns of a
-    /// pattern, but not of floats, which Alphas may evaluate.
-    void define(const std::string& name, bool is_float, const std::string& type,
-                const Parameters& parameters, const Place& place);
+    /// Adds a texture. Warns of a pattern that is shown by its mean wherever it is used, but not of
+    /// floats, which Alphas may evaluate.
+    void define(const std::string& name, TextureRequest request);
     /// Warns that textures of this class are shown by their mean.
     void tell_mean(const std::string& type, const Place& place) const;
 
@@ -27,16 +41,46 @@ public:
     /// such patterns are better not used.
     bool is_pattern(const Parameters& parameters, std::string_view name) const;
 
+    /// Returns the texture of the scene that the parameter names; nothing if it names none, or one
+    /// that is shown by its mean.
+    std::optional<uint32_t> texture(const Parameters& parameters, std::string_view name);
+    /// Returns the product of a texture of the scene and a colour.
+    uint32_t product(uint32_t texture, const vec3& color);
+    /// Adds a picture as a texture of the scene. place: names it.
+    uint32_t image(const std::string& file, const Place& place, ImageTexture image, bool on_uv);
+    /// Returns whether texture() has returned the texture that has this name now.
+    bool is_used(const std::string& name) const;
+    /// Returns whether a texture of the scene lies on texture coordinates.
+    bool is_on_uv(uint32_t texture) const;
+
+    /// Moves the textures and their pictures to the scene.
+    void take(Scene& scene);
+
 private:
-    struct Mean {
-        vec3 color;
-        bool is_pattern;
+    struct Definition {
+        TextureRequest request;
+        vec3 mean{0};
+        bool is_pattern = false;
+        std::map<std::string, size_t, std::less<>> parts; // parameters that name textures
+        bool is_made = false;
+        std::optional<uint32_t> made; // nothing: it is shown by its mean
     };
 
+    const Definition* find(const Parameters& parameters, std::string_view name) const;
     vec3 mean(const std::string& type, const Parameters& parameters) const;
+    std::optional<uint32_t> make(size_t definition);
+    std::optional<uint32_t> make_image(const TextureRequest& request);
+    std::optional<uint32_t> make_checkerboard(const Definition& definition);
+    std::optional<uint32_t> make_combined(const Definition& definition, TextureKind kind,
+                                          std::initializer_list<std::string_view> names);
+    std::optional<TextureStop> stop(const Definition& definition, std::string_view name,
+                                    const vec3& otherwise);
 
     Diagnostics& diagnostics_;
-    std::unordered_map<std::string, Mean> means_;
+    const Tokens& tokens_;
+    std::vector<Definition> definitions_; // those of a name that was defined anew stay
+    std::unordered_map<std::string, size_t> by_name_;
+    Scene scene_; // only its textures and pictures
 };
 
 } // namespace ovc::pbrt

@@ -470,7 +470,8 @@ void PatternParts::take_warp() {
 }
 
 void PatternParts::finish() {
-    if (!changed_ || (!chosen_ && !pigment_.pattern))
+    const bool is_picture = !chosen_ && pigment_.pattern && pigment_.pattern->image_map;
+    if (!changed_ || is_picture || (!chosen_ && !pigment_.pattern))
         return;
     pigment_.pattern.reset();
     if (!chosen_)

@@ -125,6 +125,7 @@ Pigment parse_pigment_parts(Reader& reader, Pigment pigment, char end) {
     const auto plain = [&](const Color& color) {
         pattern.forget();
         pigment.color = color;
+        pigment.pattern.reset();
         pigment.holes.reset();
         pigment.notes.clear();
     };

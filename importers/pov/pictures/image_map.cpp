@@ -36,6 +36,15 @@ Color average(const Picture& picture, const std::array<double, 256>& linear) {
     return {vec3(sum / count), 0, float(1 - opacity / count)};
 }
 
+/// Returns the power that turns codes into colors of the scene, or 0 for sRGB's curve. The colors
+/// of a scene with an assumed_gamma are light ^ (1 / gamma); the curve is taken for a power of 2.2
+/// then.
+double gamma_of(const Reader& reader) {
+    if (!reader.has_linear_colors() || reader.gamma == kSrgbGamma)
+        return 1;
+    return reader.gamma == 1 ? 0 : 2.2 / reader.gamma;
+}
+
 /// Reads `all A`, or the number of a color and A, behind filter or transmit.
 void parse_through(Reader& reader, MapTransparency& to, float MapTransparency::Share::*kind) {
     if (reader.take("all")) {
@@ -52,6 +61,22 @@ struct MapWords {
     MapTransparency transparency;
     bool smooth = false;
     int type = 0; // 0: the picture lies on x and y
+
+    /// Returns the projection of the type; nothing for one that POV-Ray does not have.
+    std::optional<ImageTexture::Projection> projection() const {
+        switch (type) {
+        case 0:
+            return ImageTexture::Projection::Planar;
+        case 1:
+            return ImageTexture::Projection::Spherical;
+        case 2:
+            return ImageTexture::Projection::Cylindrical;
+        case 5:
+            return ImageTexture::Projection::Torus;
+        default:
+            return std::nullopt;
+        }
+    }
 };
 
 MapWords parse_map_words(Reader& reader, const Place& start) {
@@ -73,6 +98,27 @@ MapWords parse_map_words(Reader& reader, const Place& start) {
     return words;
 }
 
+/// Returns the picture as a texture of the scene. Where holes are cut, it is opaque.
+PatternPtr shown_by_textures(const Reader& reader, const Place& start, const std::string& path,
+                             const MapWords& words, const Pigment& pigment) {
+    ImageTexture image;
+    image.projection = *words.projection();
+    image.gamma = gamma_of(reader);
+    image.filter = words.smooth ? TexelFilter::Smooth : TexelFilter::Nearest;
+    image.beyond_s = image.beyond_t = words.transparency.once
+                                          ? (pigment.holes ? Beyond::Clamp : Beyond::Nothing)
+                                          : Beyond::Repeat;
+    image.is_transparent = !pigment.holes && pigment.color.transmit > 0;
+    image.filter_all = words.transparency.all.filter;
+    image.transmit_all = words.transparency.all.transmit;
+    image.otherwise = pigment.holes ? pigment.holes->color : pigment.color;
+    PatternMap map;
+    map.image_map =
+        ImageMap{std::filesystem::absolute(path).lexically_normal().string(),
+                 fmt::format("{}:{}:{}", start.file->name, start.line, start.column), image};
+    return std::make_shared<const PatternMap>(std::move(map));
+}
+
 } // namespace
 
 void parse_image_map(Reader& reader, const Token& word, Pigment& pigment) {
@@ -80,6 +126,7 @@ void parse_image_map(Reader& reader, const Token& word, Pigment& pigment) {
         pigment.notes = {reader.note(kind, at, sentence)};
     };
     pigment.color = {vec3(0.5f)};
+    pigment.pattern.reset();
     pigment.holes.reset();
     pigment.placed = dmat4(1);
     reader.expect('{', "image_map");
@@ -110,11 +157,19 @@ void parse_image_map(Reader& reader, const Token& word, Pigment& pigment) {
     pigment.color.transmit += words.transparency.all.transmit;
     const auto holes = holes_of(*picture, words.transparency, words.smooth, light);
     pigment.notes.clear();
-    if (!holes || !holes->one_color || words.type != 0)
-        note("image_map", word.place, "image_map is drawn by its average color");
     if (words.type == 0)
         pigment.holes = holes;
-    else if (holes)
+    // A color of the picture's table that lets light through has no place in a texture.
+    const bool is_shown =
+        words.projection() && !pigment.uv_mapping && words.transparency.of_index.empty();
+    const bool is_one_color = holes && holes->one_color && words.type == 0;
+    if (is_shown && !is_one_color)
+        pigment.pattern = shown_by_textures(reader, start, path.string(), words, pigment);
+    else if (!is_one_color)
+        note("image_map", word.place, "image_map is drawn by its average color");
+    if (words.type == 0)
+        return;
+    if (holes && !is_shown)
         pigment.notes.push_back(
             reader.note("map_type", word.place,
                         fmt::format("an image_map of map_type {} has no holes", words.type)));

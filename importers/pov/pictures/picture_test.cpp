@@ -163,7 +163,7 @@ TEST(PovHeightField, TakesTheNumbersOfColors) {
     EXPECT_NEAR(height("gif \"mtmand.pot\"", "<0.5, 5, 0.5>"), 99.6094, 0.02);
 }
 
-TEST(PovImageMap, IsDrawnByItsAverageColor) {
+TEST(PovImageMap, HasItsAverageColorWithoutThePicture) {
     const TestFolder folder;
     const auto picture = folder.write("a.ppm", "P3\n2 1\n255\n255 0 0 188 188 0\n");
     const Result<Scene> scene = parse_pov("#version 3.7; global_settings { assumed_gamma 1 } "
@@ -175,7 +175,11 @@ TEST(PovImageMap, IsDrawnByItsAverageColor) {
     EXPECT_NEAR(material.color.r, (1 + 0.5029) / 2, 0.001);
     EXPECT_NEAR(material.color.g, 0.5029 / 2, 0.001);
     EXPECT_NEAR(material.color.b, 0, 0.001);
-    EXPECT_NEAR(material.transmission, 0.25, 0.001);
+    ASSERT_TRUE(material.texture);
+    const ImageTexture& image = scene->textures[material.texture->texture].image.value();
+    EXPECT_EQ(image.lookup, nullptr);
+    EXPECT_NEAR(image.otherwise.rgb.g, 0.5029 / 2, 0.001);
+    EXPECT_NEAR(image.otherwise.transmit, 0.25, 0.001);
 }
 
 } // namespace

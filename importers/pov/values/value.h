@@ -118,9 +118,17 @@ struct MapStop {
     const Color& average() const { return texture ? texture->pigment.color : pigment.color; }
 };
 
+/// The picture of an image_map, which the scene's textures show.
+struct ImageMap {
+    std::string path;
+    std::string asked_for_at; // "a.pov:12:3"
+    ImageTexture image;
+};
+
 struct PatternMap {
     Pattern pattern;
-    std::vector<MapStop> stops; // at least one, in ascending order but for Average
+    std::vector<MapStop> stops;        // at least one, in ascending order but for Average
+    std::optional<ImageMap> image_map; // instead of both, except for the pattern's steps
 };
 
 struct Interior {

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // LightSampler chooses one of a scene's lights at random for path tracing, strong ones more often
-// than weak ones. Lights are emitting triangles, points, or parallel.
+// than weak ones. Lights are emitting triangles, points, parallel, or the pictures of a sky.
 #pragma once
 
 #include "core/ray.h"
 #include "core/scene.h"
+#include "host/shade/lights/sky_sampler.h"
 #include "host/shade/shade.h"
 
 #include <optional>
@@ -14,18 +15,19 @@ namespace ovc {
 
 /// Light that may arrive at a surface from one place.
 struct Arriving {
-    Ray ray;         // from the surface; t = 1 is that place
+    Ray ray;         // from the surface; t = 1 is that place, and t_max infinite for the sky
     dvec3 towards;   // the same direction, of unit length
     vec3 light;      // an emitter's radiance / `density`, or a light's irradiance at a right angle
                      // / its probability
-    double density;  // of an emitter's place, by solid angle; 0: a light, which no ray hits
-    uint32_t number; // in Scene::lights; kNone: an emitter
+    double density;  // of an emitter's place or the sky, by solid angle; 0: a light, which no ray
+                     // hits
+    uint32_t number; // in Scene::lights; kNone: an emitter or the sky
 };
 
 class LightSampler {
 public:
-    /// The scene must outlive it, and its lights must be placed.
-    explicit LightSampler(const Scene& scene);
+    /// The scene must outlive it, and its lights must be placed. up: of the background.
+    LightSampler(const Scene& scene, const vec3& up);
 
     /// Returns whether there are other lights than emitters.
     bool has_lights() const { return has_lights_; }
@@ -39,6 +41,10 @@ public:
     /// seen from `distance` away; 0 where the triangle does not emit. cosine: to its normal.
     double density(TriangleId id, double distance, double cosine) const;
 
+    /// Returns the density with which sample() chooses this direction of the sky, of unit length; 0
+    /// where the sky has no picture.
+    double sky_density(const dvec3& direction) const;
+
 private:
     /// The emitting triangles of one mesh, whose sums begin at `first`.
     struct Emitters {
@@ -50,16 +56,21 @@ private:
 
     void add_lights(const dvec3& middle, double reach);
     void add_emitters(double reach);
+    void add_sky();
     void share_with_the_weak();
     std::optional<Arriving> from_light(uint32_t number, const SurfacePoint& surface) const;
     std::optional<Arriving> from_emitter(const Emitters& emitters, size_t i,
                                          const SurfacePoint& surface, const dvec2& u) const;
+    std::optional<Arriving> from_sky(const SurfacePoint& surface, const dvec2& u) const;
     double chance(size_t i) const { return (sums_[i + 1] - sums_[i]) / sums_.back(); }
 
     const Scene& scene_;
+    const vec3 up_;
+    const SkySampler sky_sampler_;
     bool has_lights_ = false;
-    std::vector<double> sums_{0};       // running sums of the chances of lights, then of triangles
-    std::vector<Emitters> emitters_;    // in the order of `first`
+    std::vector<double> sums_{0};    // running sums of the chances of lights, triangles and the sky
+    size_t sky_ = SIZE_MAX;          // its place among them
+    std::vector<Emitters> emitters_; // in the order of `first`
     std::vector<uint32_t> emitters_of_; // by mesh, an index of emitters_; kNone: it does not emit
 };
 

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Lights are chosen by their power, with a binary search in the running sums of their chances.
-#include "host/shade/light_sampler.h"
+#include "host/shade/lights/light_sampler.h"
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
 namespace ovc {
@@ -37,12 +38,14 @@ static Box measured(const Soup& soup) {
     return box;
 }
 
-LightSampler::LightSampler(const Scene& scene) : scene_(scene) {
+LightSampler::LightSampler(const Scene& scene, const vec3& up)
+    : scene_(scene), up_(up), sky_sampler_(scene, up) {
     const Box box = measured(scene.soup);
     const dvec3 middle = box.empty() ? dvec3(0) : box.center();
     const double reach = box.empty() ? 1 : std::max(0.5 * glm::length(box.extent()), 1e-30);
     add_lights(middle, reach);
     add_emitters(reach);
+    add_sky();
     share_with_the_weak();
 }
 
@@ -70,6 +73,9 @@ void LightSampler::add_emitters(double reach) {
         if (material >= scene_.materials.size() || !scene_.materials[material].optics)
             continue;
         const Optics& optics = *scene_.materials[material].optics;
+        // What differs from place to place is left to the paths that find it.
+        if (const auto& maps = scene_.materials[material].maps; maps && maps->emission != kNone)
+            continue;
         const double power = luminance(optics.emission) / (reach * reach);
         if (!(power > 0) || !std::isfinite(power))
             continue;
@@ -83,6 +89,14 @@ void LightSampler::add_emitters(double reach) {
     }
 }
 
+/// Adds the sky by the light that it brings to a surface which sees half of it.
+void LightSampler::add_sky() {
+    if (!sky_sampler_.shines())
+        return;
+    sky_ = sums_.size() - 1;
+    sums_.push_back(sums_.back() + std::numbers::pi * sky_sampler_.mean() / scene_.exposure);
+}
+
 /// Half of the choices go by power, the others to all lights and emitting meshes alike: a weak one
 /// nearby may light places that a strong one does not reach.
 void LightSampler::share_with_the_weak() {
@@ -90,6 +104,8 @@ void LightSampler::share_with_the_weak() {
     std::iota(first.begin(), first.end(), size_t(0));
     for (const Emitters& emitters : emitters_)
         first.push_back(emitters.first);
+    if (sky_sampler_.shines())
+        first.push_back(sky_);
     first.push_back(sums_.size() - 1);
     const std::vector<double> powers = sums_;
     const auto power = [&](size_t group) {
@@ -115,6 +131,8 @@ std::optional<Arriving> LightSampler::sample(const SurfacePoint& surface, double
     const size_t i = size_t(std::upper_bound(sums_.begin(), sums_.end(), at) - sums_.begin()) - 1;
     if (i < scene_.lights.size())
         return from_light(uint32_t(i), surface);
+    if (i == sky_)
+        return from_sky(surface, u);
     const auto next = std::upper_bound(emitters_.begin(), emitters_.end(), i,
                                        [](size_t n, const Emitters& e) { return n < e.first; });
     return from_emitter(next[-1], i, surface, u);
@@ -152,6 +170,21 @@ std::optional<Arriving> LightSampler::from_emitter(const Emitters& emitters, siz
                     emitters.radiance / float(density),
                     density,
                     kNone};
+}
+
+std::optional<Arriving> LightSampler::from_sky(const SurfacePoint& surface, const dvec2& u) const {
+    const SkySample sky = sky_sampler_.sample(u);
+    const double density = chance(sky_) * sky.density;
+    const vec3 radiance = background_color(scene_, up_, sky.direction);
+    return Arriving{{surface.position, 0, sky.direction},
+                    sky.direction,
+                    radiance / float(density),
+                    density,
+                    kNone};
+}
+
+double LightSampler::sky_density(const dvec3& direction) const {
+    return sky_sampler_.shines() ? chance(sky_) * sky_sampler_.density(direction) : 0;
 }
 
 double LightSampler::density(TriangleId id, double distance, double cosine) const {

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+// Projections of points onto a picture. The octahedral one: Clarberg 2008, "Fast Equal-Area Mapping
+// of the (Hemi)Sphere using SIMD", in the form of pbrt-v4.
+#include "core/texture/image_texture.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace ovc {
+
+namespace {
+
+constexpr double kTurn = 2 * std::numbers::pi;
+
+/// Returns the angle from +a over +b as a share of a turn, in [0, 1).
+double share_of_turn(double a, double b) {
+    const double share = std::atan2(b, a) / kTurn;
+    return share < 0 ? share + 1 : share;
+}
+
+dvec2 octahedral(const dvec3& direction) {
+    const dvec3 d = glm::abs(direction);
+    const double length = glm::length(d);
+    if (!(length > 0))
+        return dvec2(0.5);
+    const double r = std::sqrt(std::max(1 - d.z / length, 0.0));
+    const double larger = std::max(d.x, d.y), smaller = std::min(d.x, d.y);
+    double phi = larger > 0 ? std::atan2(smaller, larger) * 2 / std::numbers::pi : 0;
+    phi = d.x < d.y ? 1 - phi : phi;
+    dvec2 at(r - phi * r, phi * r);
+    if (direction.z < 0)
+        at = dvec2(1 - at.y, 1 - at.x);
+    return {0.5 * (std::copysign(at.x, direction.x) + 1),
+            0.5 * (std::copysign(at.y, direction.y) + 1)};
+}
+
+dvec2 projected(ImageTexture::Projection projection, const dvec3& at) {
+    const double around = std::hypot(at.x, at.z);
+    switch (projection) {
+    case ImageTexture::Projection::Planar:
+        break;
+    case ImageTexture::Projection::Spherical:
+        return {share_of_turn(at.x, at.z), 0.5 + 2 * std::atan2(at.y, around) / kTurn};
+    case ImageTexture::Projection::Cylindrical:
+        return {share_of_turn(at.x, at.z), at.y};
+    case ImageTexture::Projection::Torus:
+        return {share_of_turn(at.x, at.z), share_of_turn(1 - around, -at.y)};
+    case ImageTexture::Projection::LatLong:
+        return {share_of_turn(at.x, at.y),
+                1 - 2 * std::atan2(std::hypot(at.x, at.y), at.z) / kTurn};
+    case ImageTexture::Projection::Octahedral:
+        return octahedral(at);
+    }
+    return dvec2(at);
+}
+
+/// Returns how far one point of the picture lies from another. Around an axis, the shorter way.
+dvec2 step(const ImageTexture& image, const dvec2& from, const dvec3& to) {
+    dvec2 between = projected(image.projection, to) - from;
+    if (image.projection != ImageTexture::Projection::Planar)
+        between -= glm::round(between);
+    return between;
+}
+
+dvec2 turned(const ImageTexture& image, const dvec2& side) {
+    const std::array<dvec3, 2>& rows = image.to_picture;
+    return {rows[0].x * side.x + rows[0].y * side.y, rows[1].x * side.x + rows[1].y * side.y};
+}
+
+vec3 of_channel(const ImageTexture& image, const vec4& found) {
+    switch (image.channel) {
+    case ImageTexture::Channel::Color:
+        break;
+    case ImageTexture::Channel::Red:
+        return vec3(found.x);
+    case ImageTexture::Channel::Green:
+        return vec3(found.y);
+    case ImageTexture::Channel::Blue:
+        return vec3(found.z);
+    case ImageTexture::Channel::Opacity:
+        return vec3(found.w);
+    case ImageTexture::Channel::Mask:
+        return vec3(image.lookup->has_opacity() ? found.w : (found.x + found.y + found.z) / 3);
+    }
+    return vec3(found);
+}
+
+} // namespace
+
+TransparentColor color_at(const ImageTexture& image, const dvec3& at,
+                          const std::array<dvec3, 2>& sides) {
+    if (!image.lookup)
+        return image.otherwise;
+    const dvec2 st = projected(image.projection, at);
+    const std::array<dvec3, 2>& rows = image.to_picture;
+    PictureArea area{{glm::dot(rows[0], dvec3(st, 1)), glm::dot(rows[1], dvec3(st, 1))}};
+    if (!std::isfinite(area.st.x) || !std::isfinite(area.st.y))
+        return image.otherwise;
+    if (sides[0] != dvec3(0) || sides[1] != dvec3(0)) {
+        area.side_a = turned(image, step(image, st, at + sides[0]));
+        area.side_b = turned(image, step(image, st, at + sides[1]));
+    }
+    area.beyond_s = image.beyond_s;
+    area.beyond_t = image.beyond_t;
+    area.filter = image.filter;
+    const vec4 found = image.lookup->color(area);
+    TransparentColor color;
+    color.rgb = image.scale * of_channel(image, found) + image.offset;
+    const float opacity = image.is_transparent ? std::clamp(found.w, 0.0f, 1.0f) : 1;
+    color.filter = opacity * image.filter_all;
+    color.transmit = 1 - opacity + opacity * image.transmit_all;
+    return color;
+}
+
+} // namespace ovc

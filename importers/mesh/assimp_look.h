@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// What Assimp's materials and lights become: above all those of glTF 2.0, with their textures.
+#pragma once
+
+#include "core/scene.h"
+
+#include <assimp/scene.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace ovc {
+
+/// A material of the scene, and what its meshes need besides.
+struct AssimpMaterial {
+    uint32_t cutout = kNone; // index into Scene::cutouts
+    uint32_t uv_set = 0;     // the texture coordinates that its textures lie on
+};
+
+/// Adds the materials of a file to the scene, with their textures. left_out: receives the names of
+/// pictures that are not shown.
+std::vector<AssimpMaterial> add_materials(const aiScene& found, const std::filesystem::path& file,
+                                          Scene& scene, std::vector<std::string>& left_out);
+
+/// Adds lights where their nodes stand, in glTF's units. Returns how many it leaves out.
+uint64_t add_lights(const aiScene& found, Scene& scene);
+
+} // namespace ovc

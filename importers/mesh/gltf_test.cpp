@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: Apache-2.0
+// glTF 2.0 through Assimp: textures, their transforms, alpha modes, lights. The files are made
+// here.
+#include "core/texture/pattern.h"
+#include "importers/test_files.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <cstring>
+#include <numbers>
+
+namespace ovc {
+namespace {
+
+std::string base64(const std::string& bytes) {
+    constexpr const char* kDigits =
+        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string text;
+    for (size_t i = 0; i < bytes.size(); i += 3) {
+        uint32_t three = 0;
+        for (size_t k = 0; k < 3; ++k)
+            three = three << 8 | (i + k < bytes.size() ? uint8_t(bytes[i + k]) : 0);
+        for (size_t k = 0; k < 4; ++k)
+            text += i + k > bytes.size() ? '=' : kDigits[three >> (18 - 6 * k) & 63];
+    }
+    return text;
+}
+
+/// Returns a glTF file of one triangle with texture coordinates (0, 0), (1, 0) and (0, 1), v
+/// downwards. material: its JSON; more: further members.
+std::string gltf_of(const std::string& material, const std::string& more = {},
+                    const std::string& nodes = "{\"mesh\":0}", const std::string& roots = "0") {
+    const float numbers[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, /* uv */ 0, 0, 1, 0, 0, 1};
+    std::string bytes(sizeof(numbers), '\0');
+    std::memcpy(bytes.data(), numbers, sizeof(numbers));
+    return "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[" + roots +
+           "]}],\"nodes\":[" + nodes +
+           "],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"TEXCOORD_0\":1},"
+           "\"material\":0}]}],\"materials\":[" +
+           material +
+           "],\"buffers\":[{\"byteLength\":60,\"uri\":\"data:application/octet-stream;base64," +
+           base64(bytes) +
+           "\"}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":36},"
+           "{\"buffer\":0,\"byteOffset\":36,\"byteLength\":24}],\"accessors\":["
+           "{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\",\"min\":[0,0,0],"
+           "\"max\":[1,1,0]},{\"bufferView\":1,\"componentType\":5126,\"count\":3,\"type\":"
+           "\"VEC2\"}],\"textures\":[{\"source\":0},{\"source\":1,\"sampler\":0}],\"samplers\":[{"
+           "\"wrapS\":33071,\"wrapT\":33648}],\"images\":[{\"uri\":\"a%20b.png\"},{\"uri\":"
+           "\"data:image/png;base64," +
+           base64("\x89PNG not a real one") + "\"}]" + more + "}";
+}
+
+struct ReadGltf {
+    Scene scene;
+    std::vector<std::string> warnings;
+
+    const Material& material() const { return scene.materials[scene.meshes.at(0).material]; }
+    const ImageTexture& image(uint32_t texture) const { return *scene.textures[texture].image; }
+};
+
+ReadGltf read_gltf(const std::string& text) {
+    const TestFolder folder;
+    ReadGltf read;
+    Result<Scene> scene = load(folder.write("a.gltf", text), gather(read.warnings));
+    EXPECT_TRUE(scene) << (scene ? "" : scene.error().message);
+    if (scene)
+        read.scene = std::move(*scene);
+    for (PictureFile& picture : read.scene.pictures)
+        picture.file = folder.plain(picture.file);
+    return read;
+}
+
+TEST(Gltf, BaseColorIsATextureTimesAFactor) {
+    const ReadGltf read =
+        read_gltf(gltf_of("{\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.5,1,0.25,1],"
+                          "\"baseColorTexture\":{\"index\":0},\"metallicFactor\":0}}"));
+    EXPECT_TRUE(read.warnings.empty()) << read.warnings[0];
+    ASSERT_TRUE(read.material().texture);
+    const ImageTexture& image = read.image(read.material().texture->texture);
+    EXPECT_EQ(image.scale, vec3(0.5f, 1, 0.25f));
+    EXPECT_EQ(image.gamma, 0);
+    EXPECT_EQ(image.beyond_s, Beyond::Repeat);
+    EXPECT_EQ(read.scene.pictures[image.picture].file, "a b.png");
+    EXPECT_EQ(read.scene.meshes[0].uv, (std::vector<vec2>{{0, 1}, {1, 1}, {0, 0}}))
+        << "v goes up here";
+    EXPECT_EQ(read.scene.meshes[0].cutout, kNone);
+}
+
+TEST(Gltf, PicturesWithinTheFileAreKeptWithIt) {
+    const ReadGltf read =
+        read_gltf(gltf_of("{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":1}}}"));
+    ASSERT_EQ(read.scene.pictures.size(), 1u);
+    const std::vector<uint8_t>& bytes = read.scene.pictures[0].contents;
+    EXPECT_EQ(std::string(bytes.begin(), bytes.end()), "\x89PNG not a real one");
+    const ImageTexture& image = read.image(read.material().texture->texture);
+    EXPECT_EQ(image.beyond_s, Beyond::Clamp);
+    EXPECT_EQ(image.beyond_t, Beyond::Mirror);
+}
+
+/// KHR_texture_transform: uv' = translation x rotation x scale x uv, with v downwards.
+TEST(Gltf, TextureTransformsAreThoseOfTheExtension) {
+    const double angle = 0.4, c = std::cos(angle), s = std::sin(angle);
+    const ReadGltf read = read_gltf(gltf_of(
+        "{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0,\"extensions\":{"
+        "\"KHR_texture_transform\":{\"offset\":[0.3,-0.2],\"rotation\":0.4,\"scale\":[2,3]}}}}}",
+        ",\"extensionsUsed\":[\"KHR_texture_transform\"]"));
+    const ImageTexture& image = read.image(read.material().texture->texture);
+    for (const dvec2 uv : {dvec2(0, 0), dvec2(1, 0), dvec2(0, 1), dvec2(0.3, 0.8)}) {
+        const dvec2 scaled = dvec2(2, 3) * uv;
+        const dvec2 expected(c * scaled.x + s * scaled.y + 0.3, -s * scaled.x + c * scaled.y - 0.2);
+        const dvec3 ours(uv.x, 1 - uv.y, 1);
+        EXPECT_NEAR(glm::dot(image.to_picture[0], ours), expected.x, 1e-5);
+        EXPECT_NEAR(1 - glm::dot(image.to_picture[1], ours), expected.y, 1e-5);
+    }
+}
+
+TEST(Gltf, MetalAndRoughnessAreChannelsOfOneTexture) {
+    const ReadGltf read = read_gltf(gltf_of(
+        "{\"pbrMetallicRoughness\":{\"metallicRoughnessTexture\":{\"index\":0},"
+        "\"metallicFactor\":0.5,\"roughnessFactor\":0.8},\"emissiveFactor\":[1,0.5,0],"
+        "\"emissiveTexture\":{\"index\":0},\"normalTexture\":{\"index\":0,\"scale\":0.75}}"));
+    const Material& material = read.material();
+    ASSERT_TRUE(material.optics);
+    EXPECT_NEAR(material.optics->width, 0.64f, 1e-6f);
+    EXPECT_EQ(material.optics->emission, vec3(1, 0.5f, 0));
+    ASSERT_TRUE(material.maps);
+    const ImageTexture& metal = read.image(material.maps->metallic);
+    EXPECT_EQ(metal.channel, ImageTexture::Channel::Blue);
+    EXPECT_EQ(metal.scale, vec3(0.5f));
+    EXPECT_EQ(metal.gamma, 1);
+    const Texture& width = read.scene.textures[material.maps->width];
+    EXPECT_EQ(width.kind, TextureKind::Product);
+    EXPECT_EQ(read.image(width.stops.at(0).texture).channel, ImageTexture::Channel::Green);
+    EXPECT_EQ(read.image(material.maps->emission).gamma, 0);
+    ASSERT_TRUE(material.normal_map);
+    EXPECT_EQ(material.normal_map->scale, 0.75);
+    EXPECT_EQ(material.normal_map->kind, NormalMap::Kind::Tangent);
+    EXPECT_EQ(read.scene.meshes[0].uv.size(), 3u);
+}
+
+TEST(Gltf, AlphaModesMakeHoles) {
+    const auto cutout = [](const std::string& mode) {
+        const ReadGltf read =
+            read_gltf(gltf_of("{\"pbrMetallicRoughness\":{\"baseColorFactor\":[1,1,1,0.5],"
+                              "\"baseColorTexture\":{\"index\":0}}" +
+                              mode + "}"));
+        const uint32_t number = read.scene.meshes[0].cutout;
+        if (number == kNone)
+            return std::optional<Cutout>();
+        const ImageTexture& image = read.image(read.scene.cutouts[number].texture);
+        EXPECT_EQ(image.channel, ImageTexture::Channel::Opacity);
+        EXPECT_EQ(image.scale, vec3(0.5f));
+        EXPECT_EQ(read.material().transmission, 0) << "the holes let light through";
+        return std::optional(read.scene.cutouts[number]);
+    };
+    EXPECT_FALSE(cutout(""));
+    EXPECT_EQ(cutout(",\"alphaMode\":\"MASK\",\"alphaCutoff\":0.25").value().threshold, 0.25f);
+    EXPECT_EQ(cutout(",\"alphaMode\":\"MASK\"").value().threshold, 0.5f);
+    EXPECT_EQ(cutout(",\"alphaMode\":\"BLEND\"").value().threshold, 0);
+}
+
+TEST(Gltf, PunctualLightsStandWhereTheirNodesDo) {
+    const ReadGltf read = read_gltf(gltf_of(
+        "{}",
+        ",\"extensionsUsed\":[\"KHR_lights_punctual\"],\"extensions\":{\"KHR_lights_punctual\":{"
+        "\"lights\":[{\"type\":\"point\",\"intensity\":3,\"color\":[1,0.5,0]},"
+        "{\"type\":\"directional\",\"intensity\":2},{\"type\":\"spot\",\"intensity\":1,\"spot\":{"
+        "\"innerConeAngle\":0.2,\"outerConeAngle\":0.5}}]}}",
+        "{\"mesh\":0},{\"name\":\"p\",\"translation\":[1,2,3],\"extensions\":{"
+        "\"KHR_lights_punctual\":{\"light\":0}}},"
+        "{\"name\":\"d\",\"rotation\":[-0.70710678,0,0,0.70710678],\"extensions\":{"
+        "\"KHR_lights_punctual\":{\"light\":1}}},"
+        "{\"name\":\"s\",\"translation\":[0,0,5],\"extensions\":{\"KHR_lights_punctual\":{"
+        "\"light\":2}}}",
+        "0,1,2,3"));
+    ASSERT_EQ(read.scene.lights.size(), 3u);
+    const Light& point = read.scene.lights[0];
+    EXPECT_EQ(point.position, dvec3(1, 2, 3));
+    // Its intensity over the square of the distance.
+    const double fall = 2 / (1 + std::pow(4 / point.fade_distance, point.fade_power));
+    EXPECT_NEAR(point.color.x * fall / read.scene.exposure, 3.0 / 16, 1e-4);
+    EXPECT_NEAR(point.color.y * fall / read.scene.exposure, 1.5 / 16, 1e-4);
+    const Light& sun = read.scene.lights[1];
+    EXPECT_TRUE(sun.parallel);
+    EXPECT_LT(glm::length(sun.direction - dvec3(0, -1, 0)), 1e-5);
+    EXPECT_NEAR(sun.color.x / read.scene.exposure, 2, 1e-5);
+    const Light& spot = read.scene.lights[2];
+    ASSERT_TRUE(spot.cone);
+    EXPECT_NEAR(spot.cone->radius_cosine, std::cos(0.2), 1e-6);
+    EXPECT_NEAR(spot.cone->falloff_cosine, std::cos(0.5), 1e-6);
+    EXPECT_LT(glm::length(spot.direction - dvec3(0, 0, -1)), 1e-5);
+    EXPECT_THAT(read.warnings, testing::Not(testing::Contains(testing::HasSubstr("light"))));
+}
+
+} // namespace
+} // namespace ovc

@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: Apache-2.0
+// Textures of PBRT files: pictures and patterns on their mappings, and what materials do with them.
+#include "core/texture/pattern.h"
+#include "importers/test_files.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace ovc {
+namespace {
+
+constexpr const char* kTexturedTriangle =
+    " Shape \"trianglemesh\" \"integer indices\" [0 1 2] \"point3 P\" [0 0 0  1 0 0  0 1 0] "
+    "\"point2 uv\" [0 0  1 0  0 1] ";
+
+/// Shows s, t and 0.5.
+class ShowsPbrtPlace final : public ImageLookup {
+public:
+    vec4 color(const PictureArea& area) const override {
+        return {float(area.st.x), float(area.st.y), 0.5f, 1};
+    }
+    dvec2 size() const override { return dvec2(8); }
+    bool has_opacity() const override { return false; }
+};
+
+struct TexturedScene {
+    Scene scene;
+    std::vector<std::string> warnings;
+
+    const Material& material() const { return scene.materials[scene.meshes.at(0).material]; }
+    const ImageTexture& image(uint32_t texture) const { return *scene.textures[texture].image; }
+    /// Returns the color of the material's texture at a point of the world and texture coordinates.
+    vec3 color_of(const dvec3& at, const dvec2& uv) const {
+        TexturePoint point{at};
+        point.has_uv = true;
+        point.uv = uv;
+        const PlacedTexture& placed = material().texture.value();
+        return color_at(scene.textures, placed.texture, placed.at(point)).rgb;
+    }
+};
+
+TexturedScene read_textured(const std::string& text) {
+    static const ShowsPbrtPlace lookup;
+    const TestFolder folder;
+    TexturedScene read;
+    Result<Scene> scene =
+        load(folder.write("a.pbrt", "WorldBegin\n" + text), gather(read.warnings));
+    EXPECT_TRUE(scene) << (scene ? "" : scene.error().message);
+    if (scene)
+        read.scene = std::move(*scene);
+    for (std::string& warning : read.warnings)
+        warning = folder.plain(warning);
+    for (PictureFile& picture : read.scene.pictures) {
+        picture.file = folder.plain(picture.file);
+        picture.asked_for_at = folder.plain(picture.asked_for_at);
+    }
+    for (Texture& texture : read.scene.textures)
+        if (texture.image)
+            texture.image->lookup = &lookup;
+    return read;
+}
+
+TexturedScene read_picture(const std::string& parameters) {
+    return read_textured("Texture \"t\" \"color\" \"imagemap\" \"string filename\" \"a.png\" " +
+                         parameters + " Material \"matte\" \"texture Kd\" \"t\"" +
+                         kTexturedTriangle);
+}
+
+void expect_near(const vec3& found, const vec3& expected) {
+    EXPECT_LT(glm::length(found - expected), 1e-5f) << found.x << " " << found.y << " " << found.z
+                                                    << " for " << expected.x << " " << expected.y;
+}
+
+TEST(PbrtTexture, PicturesLieOnTextureCoordinates) {
+    const TexturedScene read = read_picture("\"float uscale\" 2 \"float vscale\" 3 "
+                                            "\"float udelta\" 0.25 \"float vdelta\" 0.5");
+    EXPECT_TRUE(read.warnings.empty());
+    ASSERT_EQ(read.scene.pictures.size(), 1u);
+    EXPECT_EQ(read.scene.pictures[0].file, "a.png");
+    EXPECT_EQ(read.scene.pictures[0].asked_for_at, "a.pbrt:2");
+    EXPECT_EQ(read.scene.meshes[0].uv, (std::vector<vec2>{{0, 0}, {1, 0}, {0, 1}}));
+    EXPECT_EQ(read.scene.meshes[0].texture_coordinates_left_out, 0u);
+    expect_near(read.color_of(dvec3(9), {0.125, 0.25}), vec3(0.5f, 1.25f, 0.5f));
+}
+
+TEST(PbrtTexture, MappingsAreThoseOfTheirFormulas) {
+    const dvec3 at(0.3, -0.4, 0.7);
+    const double pi = std::numbers::pi;
+    const TexturedScene planar =
+        read_picture("\"string mapping\" \"planar\" \"vector3 v1\" [1 2 0] \"vector3 v2\" [0 0 3] "
+                     "\"float udelta\" 0.5 \"float vdelta\" -1");
+    expect_near(planar.color_of(at, dvec2(0)), vec3(0.3f - 0.8f + 0.5f, 2.1f - 1, 0.5f));
+    const double theta = std::acos(at.z / glm::length(at));
+    const double phi = std::atan2(at.y, at.x) + 2 * pi;
+    const TexturedScene spherical = read_picture("\"string mapping\" \"spherical\"");
+    expect_near(spherical.color_of(at, dvec2(0)),
+                vec3(float(theta / pi), float(phi / (2 * pi)), 0.5f));
+    const TexturedScene cylindrical = read_picture("\"string mapping\" \"cylindrical\"");
+    expect_near(cylindrical.color_of(at, dvec2(0)),
+                vec3(float((pi + std::atan2(at.y, at.x)) / (2 * pi)), 0.7f, 0.5f));
+}
+
+TEST(PbrtTexture, MappingsInSpaceAreThoseOfTheTexture) {
+    const TexturedScene read = read_textured(
+        "AttributeBegin Translate 1 2 3 Scale 2 2 2 Texture \"t\" \"color\" \"imagemap\" "
+        "\"string filename\" \"a.png\" \"string mapping\" \"planar\" AttributeEnd "
+        "Material \"matte\" \"texture Kd\" \"t\"" +
+        std::string(kTexturedTriangle));
+    expect_near(read.color_of({2, 2.5, 0}, dvec2(0)), vec3(0.5f, 0.25f, 0.5f));
+    EXPECT_TRUE(read.scene.meshes[0].uv.empty()) << "nothing lies on texture coordinates";
+}
+
+TEST(PbrtTexture, ParametersOfPictures) {
+    const auto image = [](const std::string& parameters) {
+        return *read_picture(parameters).scene.textures[0].image;
+    };
+    EXPECT_EQ(image("").gamma, 0);
+    EXPECT_EQ(image("").filter, TexelFilter::Mipmaps);
+    EXPECT_EQ(image("\"bool gamma\" false").gamma, 1);
+    EXPECT_EQ(image("\"string encoding\" \"linear\"").gamma, 1);
+    EXPECT_EQ(image("\"string encoding\" \"gamma 2.5\"").gamma, 2.5);
+    EXPECT_EQ(image("\"float gamma\" 1.8").gamma, 1.8);
+    EXPECT_EQ(image("\"string wrap\" \"black\"").beyond_s, Beyond::Nothing);
+    EXPECT_EQ(image("\"string wrap\" \"clamp\"").beyond_t, Beyond::Clamp);
+    EXPECT_EQ(image("\"string filter\" \"point\"").filter, TexelFilter::Nearest);
+    EXPECT_EQ(image("\"string filter\" \"bilinear\"").filter, TexelFilter::Smooth);
+    const ImageTexture inverted = image("\"bool invert\" true \"float scale\" 0.5");
+    EXPECT_EQ(inverted.scale, vec3(-0.5f));
+    EXPECT_EQ(inverted.offset, vec3(1));
+}
+
+TEST(PbrtTexture, ProductsMixesAndBoardsAreMadeOfParts) {
+    const std::string picture =
+        "Texture \"p\" \"color\" \"imagemap\" \"string filename\" \"a.png\" ";
+    const auto made = [&](const std::string& texture) {
+        return read_textured(picture + "Texture \"t\" \"color\" " + texture +
+                             " Material \"diffuse\" \"texture reflectance\" \"t\"" +
+                             kTexturedTriangle);
+    };
+    const dvec2 uv(0.25, 0.75);
+    const vec3 shown(0.25f, 0.75f, 0.5f);
+    expect_near(
+        made("\"scale\" \"texture tex1\" \"p\" \"rgb tex2\" [1 0.5 0]").color_of(dvec3(0), uv),
+        shown * vec3(1, 0.5f, 0));
+    expect_near(made("\"scale\" \"texture tex\" \"p\" \"float scale\" 0.5").color_of(dvec3(0), uv),
+                0.5f * shown);
+    expect_near(made("\"mix\" \"rgb tex1\" [1 1 1] \"texture tex2\" \"p\" \"float amount\" 0.25")
+                    .color_of(dvec3(0), uv),
+                0.75f + 0.25f * shown);
+    const TexturedScene board = made("\"checkerboard\" \"texture tex1\" \"p\" \"rgb tex2\" [1 0 0] "
+                                     "\"float uscale\" 4 \"float vscale\" 4");
+    expect_near(board.color_of(dvec3(0), {0.3, 0.9}), vec3(0.3f, 0.9f, 0.5f));
+    expect_near(board.color_of(dvec3(0), {0.3, 0.6}), vec3(1, 0, 0));
+    const TexturedScene solid =
+        made("\"checkerboard\" \"integer dimension\" 3 \"rgb tex1\" [1 1 1] \"rgb tex2\" [0 0 0]");
+    expect_near(solid.color_of({0.5, 1.5, 1.5}, uv), vec3(1));
+    expect_near(solid.color_of({0.5, 1.5, 2.5}, uv), vec3(0));
+}
+
+TEST(PbrtTexture, APatternThatIsNotKnownIsItsMeanAndSaid) {
+    const TexturedScene read = read_textured(
+        "Texture \"n\" \"color\" \"marble\"\nTexture \"t\" \"color\" \"scale\" \"texture tex1\" "
+        "\"n\" Material \"matte\" \"texture Kd\" \"t\"" +
+        std::string(kTexturedTriangle));
+    EXPECT_FALSE(read.material().texture);
+    EXPECT_EQ(read.warnings,
+              (std::vector<std::string>{"a.pbrt:2: textures 'marble' are shown by their mean"}));
+}
+
+TEST(PbrtTexture, MaterialsTakeColorsReflectionsHolesAndBumps) {
+    const std::string pictures =
+        "Texture \"c\" \"color\" \"imagemap\" \"string filename\" \"a.png\" "
+        "Texture \"f\" \"float\" \"imagemap\" \"string filename\" \"b.png\" ";
+    const TexturedScene plastic =
+        read_textured(pictures +
+                      "Material \"plastic\" \"texture Kd\" \"c\" \"texture Ks\" \"c\" "
+                      "\"texture bumpmap\" \"f\"" +
+                      kTexturedTriangle);
+    EXPECT_TRUE(plastic.warnings.empty());
+    EXPECT_TRUE(plastic.material().texture);
+    ASSERT_TRUE(plastic.material().maps);
+    EXPECT_EQ(plastic.material().optics->reflection, vec3(1));
+    ASSERT_TRUE(plastic.material().normal_map);
+    EXPECT_EQ(plastic.material().normal_map->kind, NormalMap::Kind::Height);
+    EXPECT_EQ(plastic.scene.pictures.size(), 2u);
+    const TexturedScene uber =
+        read_textured(pictures + "Material \"uber\" \"rgb Kd\" [1 0 0] \"texture opacity\" \"f\"" +
+                      kTexturedTriangle);
+    ASSERT_NE(uber.scene.meshes[0].cutout, kNone);
+    const Cutout& cutout = uber.scene.cutouts[uber.scene.meshes[0].cutout];
+    EXPECT_TRUE(cutout.partial);
+    EXPECT_TRUE(uber.scene.textures[cutout.texture].image);
+    const TexturedScene normals = read_textured(
+        "Material \"diffuse\" \"string normalmap\" \"n.png\"" + std::string(kTexturedTriangle));
+    ASSERT_TRUE(normals.material().normal_map);
+    EXPECT_EQ(normals.material().normal_map->kind, NormalMap::Kind::Tangent);
+    EXPECT_EQ(normals.image(normals.material().normal_map->texture).gamma, 1);
+    EXPECT_EQ(normals.scene.meshes[0].uv.size(), 3u);
+}
+
+TEST(PbrtTexture, ANameThatIsDefinedAnewMeansTheNewTexture) {
+    const TexturedScene read =
+        read_textured("Texture \"t\" \"color\" \"imagemap\" \"string filename\" \"a.png\" "
+                      "Texture \"s\" \"color\" \"scale\" \"texture tex1\" \"t\" "
+                      "Texture \"t\" \"color\" \"imagemap\" \"string filename\" \"b.png\" "
+                      "Material \"matte\" \"texture Kd\" \"s\"" +
+                      std::string(kTexturedTriangle));
+    ASSERT_EQ(read.scene.pictures.size(), 1u);
+    EXPECT_EQ(read.scene.pictures[0].file, "a.png");
+}
+
+TEST(PbrtTexture, AnEnvironmentMapIsALayerOfTheSky) {
+    const TexturedScene read = read_textured(
+        "AttributeBegin Rotate 90 0 0 1 LightSource \"infinite\" \"string mapname\" \"sky.exr\" "
+        "\"rgb scale\" [2 2 4] AttributeEnd" +
+        std::string(kTexturedTriangle));
+    ASSERT_EQ(read.scene.background.layers.size(), 1u);
+    const PlacedTexture& layer = read.scene.background.layers[0];
+    const auto seen = [&](const dvec3& direction) {
+        return color_at(read.scene.textures, layer.texture, layer.at(direction)).rgb;
+    };
+    const float exposure = read.scene.exposure;
+    // The map's s = 0 lies at its +x, which is turned to +y of the world; t = 1 is at +z.
+    expect_near(seen({-1, 0, 0}), exposure * vec3(2 * 0.25f, 2 * 0.5f, 4 * 0.5f));
+    expect_near(seen({0, -1, 0}), exposure * vec3(2 * 0.5f, 2 * 0.5f, 4 * 0.5f));
+    EXPECT_NEAR(seen({0, 0, 1}).y, exposure * 2, 1e-5);
+    const TexturedScene v4 =
+        read_textured("LightSource \"infinite\" \"string filename\" \"sky.exr\"" +
+                      std::string(kTexturedTriangle));
+    const PlacedTexture& map = v4.scene.background.layers.at(0);
+    // The middle of an octahedral map is +z, and its first row, at v = 0, is towards -y.
+    const vec3 down = color_at(v4.scene.textures, map.texture, map.at(dvec3(0, -1, 0))).rgb;
+    EXPECT_NEAR(down.y, v4.scene.exposure * 1, 1e-5);
+}
+
+} // namespace
+} // namespace ovc
