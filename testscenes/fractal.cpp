@@ -13,7 +13,7 @@ namespace ovc {
 namespace {
 
 constexpr uint32_t kBallSegments = 164, kBallRings = 92; // 2 x 164 x 91 triangles
-constexpr double kSmaller = 0.38; // a ball to the one that carries it
+constexpr double kSmaller = 0.38;                        // a ball to the one that carries it
 using std::numbers::pi;
 
 /// The bumps of a ball of about 1 are a twentieth high.

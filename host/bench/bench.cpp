@@ -100,7 +100,7 @@ public:
             const Answers answers = answers_of(workloads_[m.workload]);
             m.checksum = checksum(answers.names);
             m.differing = count_differing(answers.names, right.names);
-            m.verdicts = workloads_[m.workload].judged(soup_, right.names);
+            m.verdicts = workloads_[m.workload].judged(soup_, right.names, right.distances);
             if (!right.distances.empty())
                 m.error = distance_error(answers.distances, right.distances);
         }

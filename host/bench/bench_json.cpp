@@ -73,6 +73,7 @@ Json json_of(const BenchResult& r, const Measurement& m) {
             {"differ", m.differing},
             {"tied", m.error ? Json(m.verdicts.tied) : Json(nullptr)},
             {"wrong", m.error ? Json(m.verdicts.wrong) : Json(nullptr)},
+            {"beside", m.error ? Json(m.verdicts.beside) : Json(nullptr)},
             {"leaked", m.error ? Json(m.verdicts.leaked) : Json(nullptr)},
             {"t_error_largest", m.error ? Json(m.error->largest) : Json(nullptr)},
             {"t_error_rms", m.error ? Json(m.error->rms) : Json(nullptr)},

@@ -6,6 +6,7 @@
 #include "core/system/stopwatch.h"
 #include "host/bench/ray_sets.h"
 #include "host/camera/camera.h"
+#include "host/doctor/machine_load.h"
 #include "host/ranks/shared_calls.h"
 #include "host/scene/scene_source.h"
 #include "host/scene/scene_summary.h"
@@ -14,18 +15,12 @@
 #include "kdtree/build.h"
 
 #include <fmt/format.h>
-#include <stdlib.h>
 
 #include <algorithm>
 
 namespace ovc {
 
 namespace {
-
-double load_average() {
-    double load = 0;
-    return getloadavg(&load, 1) == 1 ? load : 0;
-}
 
 /// Returns the scene's own camera, or the one that `overcast render` would place, and gives the
 /// scene the lights that `overcast render` would use. Error: the camera cannot be used.

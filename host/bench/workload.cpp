@@ -36,10 +36,6 @@ static double relative_error(double t, double right) {
     return right == 0 ? 1 : std::abs(t - right) / std::abs(right);
 }
 
-static double float_ulps(double t, double right) {
-    return t == right || right == 0 ? 0 : std::ldexp(std::abs(t - right), 23 - std::ilogb(right));
-}
-
 DistanceError distance_error(std::span<const double> distances, std::span<const double> right) {
     assert(distances.size() == right.size());
     DistanceError error;
@@ -171,9 +167,13 @@ static std::vector<TriangleId> triangles_of(std::span<const uint64_t> answers) {
     return ids;
 }
 
-Verdicts Workload::judged(const Soup& soup, std::span<const uint64_t> right) const {
-    if (const auto* nearest = std::get_if<NearestTask>(&task))
-        return judge(soup, nearest->rays, triangles_of(answers()), triangles_of(right));
+Verdicts Workload::judged(const Soup& soup, std::span<const uint64_t> right,
+                          std::span<const double> right_distances) const {
+    if (const auto* nearest = std::get_if<NearestTask>(&task)) {
+        const std::vector<double> own = distances();
+        return judge(soup, nearest->rays, {triangles_of(answers()), own},
+                     {triangles_of(right), right_distances});
+    }
     if (const auto* occlusion = std::get_if<OcclusionTask>(&task))
         return judge(occlusion->occluded, std::vector<uint8_t>(right.begin(), right.end()));
     return {};

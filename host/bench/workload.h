@@ -5,8 +5,8 @@
 
 #include "core/file/image.h"
 #include "core/scene.h"
-#include "host/bench/judge.h"
 #include "host/bench/ray_sets.h"
+#include "host/suites/judge.h"
 
 #include <cstdint>
 #include <functional>
@@ -47,9 +47,10 @@ struct Workload {
     Result<uint64_t> run(Backend& backend);
     /// Returns a number for each ray or pixel of the last run. Equal answers have equal numbers.
     std::vector<uint64_t> answers() const;
-    /// Judges the answers of the last run; `right` are those of the same run by another backend.
-    /// Zeros for a frame, whose pixels are not judged.
-    Verdicts judged(const Soup& soup, std::span<const uint64_t> right) const;
+    /// Judges the answers of the last run; `right` are answers() and distances() of the same run by
+    /// another backend. Zeros for a frame, whose pixels are not judged.
+    Verdicts judged(const Soup& soup, std::span<const uint64_t> right,
+                    std::span<const double> right_distances) const;
     /// Returns how far along each ray of the last run its answer is: t, or infinity for a miss;
     /// 0 or infinity for occlusion. Empty for a frame.
     std::vector<double> distances() const;
