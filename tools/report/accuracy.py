@@ -113,7 +113,8 @@ def shapes_of(runs):
     rows = []
     for row in result["rows"]:
         seconds = row["import_seconds"] + row["build_seconds"] + row["call_seconds"]
-        rows.append({"choice": row["choice"], "triangles": row["triangles"],
+        rows.append({"choice": row["choice"], "tolerance": row["tolerance"],
+                     "triangles": row["triangles"],
                      "milliseconds": 1e3 * seconds,
                      "distance": max(row["largest_distance"].values()),
                      "rmse": (row["picture"] or {}).get("rmse"),
@@ -165,6 +166,13 @@ def error_panels(figures):
         if "diffuse" in of:
             panels.append(call_panel("error-t", f"{scene['scene']}: t of bounced rays",
                                      of["diffuse"], lambda c: c["t_rms"], "RMS error of t", 1e-9))
+    systems = next((s for s in figures["scenes"] if s["key"] == "systems"), None)
+    for w in systems["workloads"] if systems else []:
+        if w["workload"] == "diffuse":
+            panels.append(call_panel("error-systems", f"{systems['scene']}, beside the thesis",
+                                     w, lambda c: c["wrong"] + c["leaked"],
+                                     "wrong and leaked a million", 1))
+            panels[-1].legend()
     if panels:
         panels[0].legend()
     for n, scene in enumerate(figures["pictures"][:1]):
@@ -180,9 +188,12 @@ def error_panels(figures):
     if figures["shapes"]:
         panel = draw.Panel("error-shapes", "Finer triangles against exact shapes",
                            "ms: read, build, trace", "largest distance, radii")
-        panel.log("x").log("y").points(0, "", [(r["milliseconds"], r["distance"])
-                                               for r in figures["shapes"] if r["distance"] > 0],
-                                       line=True)
+        panel.log("x").log("y")
+        for n, name, given in ((0, "by tolerance", True), (1, "the reader's choice", False)):
+            panel.points(n, name, [(r["milliseconds"], r["distance"]) for r in figures["shapes"]
+                                   if r["distance"] > 0 and
+                                   r["choice"].startswith("tolerance") == given], line=given)
+        panel.legend()
         panels.append(panel)
     return panels
 
@@ -217,10 +228,10 @@ def error_section(f):
         tables.append(table)
     if figures["shapes"]:
         tables.append(Table("Round shapes as triangles", [
-            "choice", "triangles", "ms", "largest distance", "picture error"],
-            [[row["choice"] if "tolerance" not in row["choice"] else "tolerance"] + [
+            "choice", "tolerance", "triangles", "ms", "largest distance", "picture error"],
+            [[row["choice"] if "tolerance" not in row["choice"] else "given"] + [
                 f.n("error", "shapes", r, k)
-                for k in ("triangles", "milliseconds", "distance", "rmse")]
+                for k in ("tolerance", "triangles", "milliseconds", "distance", "rmse")]
              for r, row in enumerate(figures["shapes"])]))
     claim = words(["Certified answers had ", f.n("error", "our_errors"), " errors in ",
                    f.n("error", "rays"), " rays; in ", f.n("error", "peer_wins"), " of ",

@@ -149,7 +149,7 @@ def fastest(f):
     peers = [w["peer"]["name"] for scene in f.at("error", "scenes") if scene["key"] != "systems"
              for w in scene["workloads"] if w["workload"] != "edges" and w["peer"] and
              w["peer"]["speed"]["median"] < 1]
-    often = f" (most often {max(set(peers), key=peers.count)})" if peers else ""
+    often = f" (most often {max(sorted(set(peers)), key=peers.count)})" if peers else ""
     return words(["A peer", often, " in ", f.n("error", "peer_wins"), ", Overcast, certified, in ",
                   f.n("error", "wins"), " of ", f.n("error", "comparisons"), " comparisons: each "
                   "scene "
@@ -158,7 +158,7 @@ def fastest(f):
 
 def exact(f):
     at = ("stiff", "sums", "embree_robust")
-    return words(["Overcast alone: ", f.n("scoreboard", "exact", "median"), " wrong of ",
+    return words(["Overcast, certified: ", f.n("scoreboard", "exact", "median"), " wrong of ",
                   f.n("scoreboard", "exact", "rays"), " rays, by exact arithmetic; Embree robust, "
                   "the "
                   "best peer, had ", f.n(*at, "wrong"), " wrong and ", f.n(*at, "leaks"),

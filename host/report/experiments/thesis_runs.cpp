@@ -40,7 +40,7 @@ void add_systems(const ReportPlan& plan, const std::string& key, const Words& pi
         if (std::ranges::find(chosen, std::string_view(system.key)) == chosen.end())
             continue;
         Words words = with_words({"render"}, picture);
-        words.insert(words.end(), {"--size", plan.quick ? "128x128" : "512x512", "--quiet",
+        words.insert(words.end(), {"--size", plan.quick ? "128x128" : "256x256", "--quiet",
                                    "--stats", "{}/stats.json", "-o", "{}/frame-####.png"});
         runs.push_back({fmt::format("{}--{}", key, system.key),
                         with_words(std::move(words), system.words), "stats.json", seconds});
