@@ -94,9 +94,9 @@ class Page(unittest.TestCase):
         return ((folder / "index.html").read_text(), json.loads((folder / "page.json").read_text()))
 
     def make(self, folder=None, **more):
-        """Makes the page without drawing, which takes most of the time."""
+        """Makes the page without plots, which take most of the time."""
         import draw
-        with unittest.mock.patch.object(draw.Panel, "svg", lambda panel: "<svg></svg>"):
+        with unittest.mock.patch.object(draw, "Panel", unittest.mock.MagicMock()):
             program.make(folder or self.folder, **more)
         return self.read(folder or self.folder)
 
@@ -272,7 +272,8 @@ class Page(unittest.TestCase):
                 folder = pathlib.Path(name) / path.stem
                 folder.mkdir()
                 shutil.copy(path, folder)
-                self.assertIn(f'{path.stem}', self.make(folder)[0])
+                program.make(folder)
+                self.assertIn(f"--only {path.stem} ", self.read(folder)[0])
 
 
 if __name__ == "__main__":

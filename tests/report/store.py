@@ -39,7 +39,7 @@ def main():
         if "experiment" not in document:
             continue
         document["runs"] = [kept(run) for run in document["runs"]
-                            if not run.get("picture") and not run["key"].startswith("kitchen")]
+                            if not run["key"].startswith("kitchen")]
         (HERE / "stored" / path.name).write_text(json.dumps(document, separators=(",", ":")) + "\n")
 
 

@@ -247,7 +247,7 @@ def error_section(f):
                    panels=error_panels(figures), tables=tables)
 
 
-GROUPS = (("cliffs", "away", "hub", "spine", "10,000", "fan", "1e76", "decided exactly"),
+GROUPS = (("hard to decide", "away", "hub", "spine", "10,000", "fan", "1e76", "decided exactly"),
           ("ill transforms", "instances"), ("far from the origin", " at ", "far-terrain"),
           ("huge and tiny", "times", "denormal", "t near", "1e-30 to", "geometric"),
           ("slivers", "sliver", "grazing"), ("grid of scale, offset, aspect", "strip: aspect"),
