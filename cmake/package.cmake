@@ -49,7 +49,8 @@ overcast, and overcast-tachyon, which runs tachyon with the library in it.")
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_DEPENDS "libegl1, libopengl0 | libgl1")
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "libegl-mesa0, libgl1-mesa-dri, python3, python3-numpy")
-set(CPACK_DEBIAN_PACKAGE_SUGGESTS "pkg-config, cmake, tachyon")
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS
+    "pkg-config, cmake, tachyon, povray, python3-matplotlib, python3-jinja2")
 # symbols and shlibs say which package programs that link the library depend on; the triggers update
 # the linker's cache.
 configure_file(cmake/debian/symbols.in ${debian}/symbols @ONLY)

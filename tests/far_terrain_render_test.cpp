@@ -5,7 +5,7 @@
 #include "host/backend/backend.h"
 #include "host/camera/camera.h"
 #include "host/render/render.h"
-#include "host/report/stability/terrain_rays.h"
+#include "host/suites/stability/terrain_rays.h"
 #include "testscenes/catalog.h"
 
 #include <gtest/gtest.h>

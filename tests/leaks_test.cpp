@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tests `overcast report --only leaks` in its short form, and its targets in meshes with holes.
-#include "host/report/stability/leak_cases.h"
+#include "host/suites/stability/leak_cases.h"
 
-#include "host/report/stability/sound_targets.h"
-#include "host/report/stability/stability.h"
-#include "host/report/stability/stability_meshes.h"
+#include "host/suites/stability/sound_targets.h"
+#include "host/suites/stability/stability.h"
+#include "host/suites/stability/stability_meshes.h"
 #include "kdtree/build.h"
 #include "kdtree/traverse.h"
 #include "tests/real_data.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tests the optics table in a short form: spawned rays neither hit the surface that they leave nor
 // escape, glass bends light as it must, mirrors are deep.
-#include "host/report/optics/optics.h"
+#include "host/suites/optics/optics.h"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Runs the stability suite in its short form: certified mode answers as the reference does, and the
 // reference names the same triangle as exact arithmetic.
-#include "host/report/stability/stability.h"
+#include "host/suites/stability/stability.h"
 
-#include "host/report/stability/stability_table.h"
+#include "host/suites/stability/stability_table.h"
 #include "kdtree/build.h"
 #include "kdtree/traverse.h"
 #include "tests/exact.h"

@@ -116,6 +116,10 @@ constexpr Generator kGenerators[] = {
     {{"fractal", "a ball of 29,848 triangles that carries others, in 25,250 places: 753,662,000"},
      0,
      0,
+     [](uint32_t, const Soup*) { return make_fractal(kFractalBalls); }},
+    {{"fractal-N", "the same in N places: N x 29,848 triangles"},
+     1,
+     70'000, // a scene takes 2^31 triangles
      alone<make_fractal>},
     {{"mirrors", "spheres over a mirror floor: 81,922 triangles"}, 0, 0, alone<make_mirrors>},
     {{"glass", "a glass and a mirror ball over a checked floor: 41,472 triangles"},

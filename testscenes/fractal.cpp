@@ -13,8 +13,7 @@ namespace ovc {
 namespace {
 
 constexpr uint32_t kBallSegments = 164, kBallRings = 92; // 2 x 164 x 91 triangles
-constexpr size_t kBalls = 25'250;
-constexpr double kSmaller = 0.38; // a ball to the one that carries it
+constexpr double kSmaller = 0.38;                        // a ball to the one that carries it
 using std::numbers::pi;
 
 /// The bumps of a ball of about 1 are a twentieth high.
@@ -71,10 +70,10 @@ struct Ball {
 
 } // namespace
 
-Scene make_fractal() {
+Scene make_fractal(uint32_t count) {
     std::vector<Ball> balls{Ball()};
-    for (size_t next = 0; balls.size() < kBalls; ++next)
-        for (int which = 0; which < 7 && balls.size() < kBalls; ++which)
+    for (size_t next = 0; balls.size() < count; ++next)
+        for (int which = 0; which < 7 && balls.size() < count; ++which)
             balls.push_back(balls[next].carried(which));
     Scene scene;
     scene.materials.push_back({"ball", vec3(0.75f, 0.55f, 0.35f), 0});

@@ -72,10 +72,11 @@ Result<Done> call(Workload& workload, Backend& backend, bool timed, Measurement&
 
 class Bench {
 public:
-    Bench(std::vector<Entrant>& entrants, std::vector<Workload>& workloads, Backend& reference,
-          const StopRequest& stop, const BenchObserver& observe)
+    Bench(std::vector<Entrant>& entrants, std::vector<Workload>& workloads, const Soup& soup,
+          Backend& reference, const StopRequest& stop, const BenchObserver& observe)
         : entrants_(entrants),
           workloads_(workloads),
+          soup_(soup),
           reference_(reference),
           stop_(stop),
           observe_(observe) {
@@ -99,6 +100,7 @@ public:
             const Answers answers = answers_of(workloads_[m.workload]);
             m.checksum = checksum(answers.names);
             m.differing = count_differing(answers.names, right.names);
+            m.verdicts = workloads_[m.workload].judged(soup_, right.names, right.distances);
             if (!right.distances.empty())
                 m.error = distance_error(answers.distances, right.distances);
         }
@@ -147,6 +149,7 @@ private:
 
     std::vector<Entrant>& entrants_;
     std::vector<Workload>& workloads_;
+    const Soup& soup_;
     Backend& reference_;
     const StopRequest& stop_;
     const BenchObserver& observe_;
@@ -155,8 +158,9 @@ private:
 } // namespace
 
 Result<Done> run_contenders(std::vector<Entrant>& entrants, std::vector<Workload>& workloads,
-                            Backend& reference, uint32_t repeats, const StopRequest& stop,
-                            const BenchObserver& observe, BenchResult& result) {
+                            const Soup& soup, Backend& reference, uint32_t repeats,
+                            const StopRequest& stop, const BenchObserver& observe,
+                            BenchResult& result) {
     for (const Entrant& entrant : entrants)
         result.entrants.push_back(
             {entrant.contender, entrant.backend->renderer(), entrant.backend->statistics(), {}});
@@ -164,7 +168,7 @@ Result<Done> run_contenders(std::vector<Entrant>& entrants, std::vector<Workload
         result.workloads.push_back(workload.name);
     result.repeats = repeats;
 
-    Bench bench(entrants, workloads, reference, stop, observe);
+    Bench bench(entrants, workloads, soup, reference, stop, observe);
     const Result<bool> warm = bench.warm_up();
     if (!warm)
         return warm.error();

@@ -28,6 +28,7 @@ struct Measurement {
     uint64_t checksum = 0;
     uint64_t differing = 0;             // answers that differ from the reference's
     std::optional<DistanceError> error; // a frame has none
+    Verdicts verdicts;                  // on them; of a frame's pixels there are none
     uint64_t flagged = 0;
     uint64_t retraced = 0;
     uint64_t passes = 0;
@@ -69,13 +70,15 @@ using BenchObserver = std::function<void(const std::string& what)>;
 
 /// Runs each workload with each entrant: once untimed, which compiles kernels and yields checksums,
 /// then `repeats` times timed, in turn with the others. `reference` answers first, and entrants'
-/// answers are compared with its answers. When stop() returns true, the run ends after the current
-/// call, whose result is dropped. Fills in entrants, workloads, repeats, measurements and complete
-/// of `result`, in a run that was stopped with the measurements so far; measurements without a
-/// timed call are left out. Error: the reference or a contender fails.
+/// answers are compared with its answers; the soup, which all have, judges those that differ. When
+/// stop() returns true, the run ends after the current call, whose result is dropped. Fills in
+/// entrants, workloads, repeats, measurements and complete of `result`, in a run that was stopped
+/// with the measurements so far; measurements without a timed call are left out. Error: the
+/// reference or a contender fails.
 Result<Done> run_contenders(std::vector<Entrant>& entrants, std::vector<Workload>& workloads,
-                            Backend& reference, uint32_t repeats, const StopRequest& stop,
-                            const BenchObserver& observe, BenchResult& result);
+                            const Soup& soup, Backend& reference, uint32_t repeats,
+                            const StopRequest& stop, const BenchObserver& observe,
+                            BenchResult& result);
 
 /// Returns a sentence about the first certified contender whose answers differ from the
 /// reference's, or an empty string where all agree.

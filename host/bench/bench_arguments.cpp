@@ -22,8 +22,8 @@ static constexpr std::string_view kAll = "all";
 static constexpr std::string_view kAuto = "auto";
 
 /// In the order of SweepOver.
-static constexpr std::array<std::string_view, 4> kSweeps = {"rays", "triangles", "leaves",
-                                                            "budget"};
+static constexpr std::array<std::string_view, 5> kSweeps = {"rays", "triangles", "instances",
+                                                            "leaves", "budget"};
 
 /// In the order of PicturesBy.
 static constexpr std::array<std::string_view, 2> kPictures = {"samples", "tolerance"};
@@ -67,13 +67,17 @@ void BenchWords::add_modes_to(CLI::App& app) {
 }
 
 void BenchWords::add_settings_to(CLI::App& app) {
-    app.add_option("--most", most,
-                   "The last row of --sweep rays, triangles or leaves has at most so many; of "
-                   "--pictures samples: 64")
+    app.add_option(
+           "--most", most,
+           "The last row of --sweep rays, triangles, instances or leaves has at most so many; "
+           "of --pictures samples: 64")
         ->type_name("N");
     app.add_option("--workloads", workloads,
                    fmt::format("Which of {}; default: all but edges", fmt::join(kWorkloads, ", ")))
         ->type_name("NAME,...");
+    app.add_flag(
+        "--float-rays", float_rays,
+        "Rays rounded to floats, so that contenders that take floats answer the same rays");
     app.add_option("--only", only,
                    fmt::format("Contenders, or the first words of their names; default: all but "
                                "the thesis- ones of {}",
@@ -243,6 +247,8 @@ static Result<Done> understand_sweep(const BenchWords& words, BenchJob& job) {
         return Error{"--sweep takes one scene"};
     if (job.sweep == SweepOver::Triangles && !words.scenes.empty())
         return Error{"--sweep triangles takes no scene: it has spheres of its own"};
+    if (job.sweep == SweepOver::Instances && !words.scenes.empty())
+        return Error{"--sweep instances takes no scene: it has fractals of its own"};
     return Done{};
 }
 
@@ -259,7 +265,7 @@ static Result<Done> understand_pictures(const BenchWords& words, BenchJob& job) 
 }
 
 static bool takes_most(const BenchWords& words, BenchKind kind) {
-    return (kind == BenchKind::Sweep && words.sweep != kSweeps[3]) ||
+    return (kind == BenchKind::Sweep && words.sweep != kSweeps.back()) ||
            (kind == BenchKind::Pictures && words.pictures == kPictures[0]);
 }
 
@@ -275,7 +281,9 @@ static Result<Done> understand_kind(const BenchWords& words, BenchJob& job) {
                : !words.pictures.empty() ? BenchKind::Pictures
                                          : BenchKind::Contenders;
     if (!words.most.empty() && !takes_most(words, job.kind))
-        return Error{"--most goes with --sweep rays, triangles or leaves, and --pictures samples"};
+        return Error{
+            "--most goes with --sweep rays, triangles, instances or leaves, and --pictures "
+            "samples"};
     if (job.kind == BenchKind::Contenders)
         return Done{};
     for (const auto& [name, text] :
@@ -363,6 +371,7 @@ Result<BenchJob> understand_bench(const BenchWords& words) {
     if (!workloads)
         return workloads.error();
     job.workloads = std::move(*workloads);
+    job.float_rays = words.float_rays;
     Result<std::vector<Contender>> contenders = contenders_of(words);
     if (!contenders)
         return contenders.error();

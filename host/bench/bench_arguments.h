@@ -14,7 +14,7 @@ namespace ovc {
 /// What the bench measures: contenders over scenes, the table of bars, whole programs, how cost
 /// grows, or what pictures cost and how wrong they are.
 enum class BenchKind { Contenders, Bars, Programs, Sweep, Pictures };
-enum class SweepOver { Rays, Triangles, Leaves, Budget };
+enum class SweepOver { Rays, Triangles, Instances, Leaves, Budget };
 enum class PicturesBy { Samples, Tolerance };
 
 /// The command line as the user gave it.
@@ -28,6 +28,7 @@ struct BenchWords {
     std::string most;
     std::string only;
     std::string workloads;
+    bool float_rays = false;
     std::string size; // empty: 1024x1024; 512x512 for programs, 256x256 for pictures
     std::string repeats = "5";
     std::string leaves;
@@ -49,8 +50,9 @@ struct BenchJob {
     BenchKind kind = BenchKind::Contenders;
     SweepOver sweep = SweepOver::Rays;
     PicturesBy pictures = PicturesBy::Samples;
-    uint64_t most = UINT64_MAX;         // max rays, triangles or leaves of a sweep, or samples
+    uint64_t most = UINT64_MAX;         // max x of a sweep, or samples
     std::vector<std::string> workloads; // empty: all but edges
+    bool float_rays = false;            // rays in numbers that floats have
     std::vector<std::string> scenes;
     bool scene_alone = false; // of the bars, only those about the scene
     ImageSize size;

@@ -109,8 +109,9 @@ TEST(BenchArguments, SayWhatIsWrong) {
         {{.gpu_memory = "abc"}, "--gpu-memory: 'abc' is no memory size"},
         {{.workloads = "primary,shadows"}, "did you mean 'shadow'?"},
         {{.sweep = "rays", .workloads = "primary"}, "measured itself, without --workloads"},
-        {{.most = "5"}, "--most goes with --sweep rays, triangles or leaves"},
-        {{.sweep = "budget", .most = "5"}, "--most goes with --sweep rays, triangles or leaves"},
+        {{.most = "5"}, "--most goes with --sweep rays, triangles, instances or leaves"},
+        {{.sweep = "budget", .most = "5"},
+         "--most goes with --sweep rays, triangles, instances or leaves"},
         {{.sweep = "rays", .most = "x"}, "--most needs a whole number"},
         {{.scenes = {"a.ovc"}, .host_memory = "50%"}, "expected bytes, such as 2G"},
         {{.scenes = {"a.ovc", "knot"}, .host_memory = "2G"},
@@ -148,9 +149,10 @@ TEST(BenchArguments, DrawPicturesBySamplesOrTolerance) {
               "--pictures takes one scene");
     EXPECT_EQ(error({.pictures = "samples", .size = "64x32"}),
               "--pictures draws squares, such as 256x256, not 64x32");
-    EXPECT_THAT(error({.pictures = "tolerance", .most = "5"}),
-                testing::HasSubstr("--most goes with --sweep rays, triangles or leaves, and "
-                                   "--pictures samples"));
+    EXPECT_THAT(
+        error({.pictures = "tolerance", .most = "5"}),
+        testing::HasSubstr("--most goes with --sweep rays, triangles, instances or leaves, and "
+                           "--pictures samples"));
     EXPECT_THAT(error({.pictures = "samples", .most = "1025"}),
                 testing::HasSubstr("--most needs a whole number from 1 to 1024"));
     EXPECT_THAT(error({.pictures = "sample"}), testing::HasSubstr("did you mean 'samples'?"));

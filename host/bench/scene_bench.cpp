@@ -6,6 +6,7 @@
 #include "core/system/stopwatch.h"
 #include "host/bench/ray_sets.h"
 #include "host/camera/camera.h"
+#include "host/doctor/machine_load.h"
 #include "host/ranks/shared_calls.h"
 #include "host/scene/scene_source.h"
 #include "host/scene/scene_summary.h"
@@ -14,18 +15,12 @@
 #include "kdtree/build.h"
 
 #include <fmt/format.h>
-#include <stdlib.h>
 
 #include <algorithm>
 
 namespace ovc {
 
 namespace {
-
-double load_average() {
-    double load = 0;
-    return getloadavg(&load, 1) == 1 ? load : 0;
-}
 
 /// Returns the scene's own camera, or the one that `overcast render` would place, and gives the
 /// scene the lights that `overcast render` would use. Error: the camera cannot be used.
@@ -60,6 +55,9 @@ Result<std::vector<Workload>> workloads_of(const Scene& scene, const Camera& cam
         workloads.push_back(ray_workload(make_primary_set(camera, side, side)));
     if (asked.frame)
         workloads.push_back(frame_workload(scene, camera, width, height, stop));
+    if (asked.float_rays)
+        for (Workload& workload : workloads)
+            round_rays(workload);
     if (!asked.only.empty())
         std::erase_if(workloads, [&](const Workload& workload) {
             return std::ranges::find(asked.only, workload.name) == asked.only.end();
@@ -145,8 +143,8 @@ Result<Done> bench_soup(const SceneBench& job, const Scene& scene, const Camera&
     const auto observe = [&](const std::string& what) {
         around.progress.show(fmt::format("{}: {}", job.scene, what));
     };
-    const Result<Done> done =
-        run_contenders(*entrants, *workloads, judge, job.repeats, around.stop, observe, result);
+    const Result<Done> done = run_contenders(*entrants, *workloads, scene.soup, judge, job.repeats,
+                                             around.stop, observe, result);
     result.load_after = load_average();
     if (!done)
         return scene.on_disk ? scene.on_disk->checked(done) : done;

@@ -21,6 +21,7 @@ constexpr std::array<uint32_t, 5> kSides = {32, 100, 316, 1000, 3162}; // 1e3 to
 constexpr std::array<uint32_t, 7> kLeaves = {1, 3, 10, 30, 100, 300, 1000};
 constexpr std::array<uint32_t, 6> kPercents = {5, 10, 20, 30, 50, 100};
 constexpr uint32_t kFirstSphere = 4, kLastSphere = 10; // 20 x 4^N triangles
+constexpr std::array<uint32_t, 6> kInstances = {1, 10, 100, 1000, 10'000, 70'000};
 
 const Contender kCertified{.name = "certified", .kind = ContenderKind::TwoLevel};
 
@@ -128,33 +129,50 @@ Result<Sweep> over_budget(const BenchJob& job, const BenchSurroundings& around) 
                       [](const BenchEntrant& e) { return 100 * e.contender.budget.pages_share; });
 }
 
-/// Returns a row for each sphere.
-Result<Sweep> over_triangles(const BenchJob& job, const BenchSurroundings& around) {
-    Sweep sweep{"sphere-N",
-                "triangles",
-                {"making s", "build s", "bytes a triangle", "primary: call s"},
-                {},
-                true};
+/// A scene of a sweep that takes no scene.
+struct Step {
+    std::string scene;
+    uint64_t x;
+};
+
+/// Returns a row for each scene whose x is no more than the job's.
+Result<Sweep> over_scenes(const BenchJob& job, const BenchSurroundings& around, Sweep sweep,
+                          std::span<const Step> steps) {
+    sweep.columns = {"making s", "build s", "bytes a triangle", "primary: call s"};
     Asked asked{.size = job.size, .ray_sets = false, .frame = false};
     asked.primary_sides = {job.size.width};
-    if (sphere_triangles(kFirstSphere) > job.most)
-        return nothing_within(job, sphere_triangles(kFirstSphere));
-    for (uint32_t n = kFirstSphere; n <= kLastSphere && !around.stop(); ++n) {
-        if (sphere_triangles(n) > job.most)
+    if (steps.front().x > job.most)
+        return nothing_within(job, steps.front().x);
+    for (const Step& step : steps) {
+        if (step.x > job.most || around.stop())
             break;
         const Result<BenchResult> r =
-            bench_scene(bench_of(job, fmt::format("sphere-{}", n), asked, {kCertified}), around);
+            bench_scene(bench_of(job, step.scene, asked, {kCertified}), around);
         if (!r)
             return r.error();
         if (r->measurements.empty())
             break; // the run was stopped
         const BenchEntrant& entrant = r->entrants[0];
-        sweep.rows.push_back({double(r->triangles),
+        sweep.rows.push_back({double(step.x),
                               {r->seconds_import, entrant.build_seconds(),
                                bytes_a_triangle(*r, entrant), call_seconds(r->measurements[0])}});
     }
     sweep.complete = !around.stop();
     return sweep;
+}
+
+Result<Sweep> over_triangles(const BenchJob& job, const BenchSurroundings& around) {
+    std::vector<Step> spheres;
+    for (uint32_t n = kFirstSphere; n <= kLastSphere; ++n)
+        spheres.push_back({fmt::format("sphere-{}", n), sphere_triangles(n)});
+    return over_scenes(job, around, {"sphere-N", "triangles", {}, {}, true}, spheres);
+}
+
+Result<Sweep> over_instances(const BenchJob& job, const BenchSurroundings& around) {
+    std::vector<Step> fractals;
+    for (const uint32_t n : kInstances)
+        fractals.push_back({fmt::format("fractal-{}", n), n});
+    return over_scenes(job, around, {"fractal-N", "instances", {}, {}, true}, fractals);
 }
 
 } // namespace
@@ -165,6 +183,8 @@ Result<Sweep> run_sweep(const BenchJob& job, const BenchSurroundings& around) {
         return over_rays(job, around);
     case SweepOver::Triangles:
         return over_triangles(job, around);
+    case SweepOver::Instances:
+        return over_instances(job, around);
     case SweepOver::Leaves:
         return over_leaves(job, around);
     case SweepOver::Budget:

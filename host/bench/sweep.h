@@ -25,8 +25,9 @@ struct Sweep {
 };
 
 /// Returns the sweep that the job asks for, with certified answers. rays: 1e3 to 1e7 camera rays of
-/// the scene; triangles: spheres of 5e3 to 2e7; leaves: 1 to 1000; budget: 5 % to 100 % of the
-/// bytes of all pages. Error: as bench_scene(), or --most is below the first row.
+/// the scene; triangles: spheres of 5e3 to 2e7; instances: 1 to 7e4 places of one mesh; leaves: 1
+/// to 1000; budget: 5 % to 100 % of the bytes of all pages. Error: as bench_scene(), or --most is
+/// below the first row.
 Result<Sweep> run_sweep(const BenchJob& job, const BenchSurroundings& around);
 
 /// Returns k of the power law c x^k nearest to a column, by least squares of logarithms. Returns

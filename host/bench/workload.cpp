@@ -42,14 +42,11 @@ DistanceError distance_error(std::span<const double> distances, std::span<const 
     uint64_t both = 0;
     double squares = 0;
     for (size_t i = 0; i < right.size(); ++i) {
-        if (!std::isfinite(right[i]))
+        if (!std::isfinite(right[i]) || !std::isfinite(distances[i]))
             continue;
-        if (!std::isfinite(distances[i])) {
-            ++error.missed;
-            continue;
-        }
         const double one = relative_error(distances[i], right[i]);
         error.largest = std::max(error.largest, one);
+        error.largest_ulps = std::max(error.largest_ulps, float_ulps(distances[i], right[i]));
         squares += one * one;
         ++both;
     }
@@ -62,6 +59,19 @@ Workload ray_workload(RaySet set) {
     if (set.query == RayQuery::Nearest)
         return {std::move(set.name), NearestTask{std::move(set.rays), std::vector<Hit>(count)}};
     return {std::move(set.name), OcclusionTask{std::move(set.rays), std::vector<uint8_t>(count)}};
+}
+
+static void round_rays(std::vector<Ray>& rays) {
+    for (Ray& ray : rays)
+        ray = {dvec3(vec3(ray.org)), double(float(ray.t_min)), dvec3(vec3(ray.dir)),
+               double(float(ray.t_max))};
+}
+
+void round_rays(Workload& workload) {
+    if (auto* nearest = std::get_if<NearestTask>(&workload.task))
+        round_rays(nearest->rays);
+    else if (auto* occlusion = std::get_if<OcclusionTask>(&workload.task))
+        round_rays(occlusion->rays);
 }
 
 Workload frame_workload(const Scene& scene, const Camera& camera, uint32_t width, uint32_t height,
@@ -148,6 +158,25 @@ std::vector<double> Workload::distances() const {
         },
         task);
     return distances;
+}
+
+static std::vector<TriangleId> triangles_of(std::span<const uint64_t> answers) {
+    std::vector<TriangleId> ids;
+    for (const uint64_t answer : answers)
+        ids.push_back({uint32_t(answer >> 32), uint32_t(answer)});
+    return ids;
+}
+
+Verdicts Workload::judged(const Soup& soup, std::span<const uint64_t> right,
+                          std::span<const double> right_distances) const {
+    if (const auto* nearest = std::get_if<NearestTask>(&task)) {
+        const std::vector<double> own = distances();
+        return judge(soup, nearest->rays, {triangles_of(answers()), own},
+                     {triangles_of(right), right_distances});
+    }
+    if (const auto* occlusion = std::get_if<OcclusionTask>(&task))
+        return judge(occlusion->occluded, std::vector<uint8_t>(right.begin(), right.end()));
+    return {};
 }
 
 } // namespace ovc

@@ -6,6 +6,7 @@
 #include "core/file/image.h"
 #include "core/scene.h"
 #include "host/bench/ray_sets.h"
+#include "host/suites/judge.h"
 
 #include <cstdint>
 #include <functional>
@@ -46,6 +47,10 @@ struct Workload {
     Result<uint64_t> run(Backend& backend);
     /// Returns a number for each ray or pixel of the last run. Equal answers have equal numbers.
     std::vector<uint64_t> answers() const;
+    /// Judges the answers of the last run; `right` are answers() and distances() of the same run by
+    /// another backend. Zeros for a frame, whose pixels are not judged.
+    Verdicts judged(const Soup& soup, std::span<const uint64_t> right,
+                    std::span<const double> right_distances) const;
     /// Returns how far along each ray of the last run its answer is: t, or infinity for a miss;
     /// 0 or infinity for occlusion. Empty for a frame.
     std::vector<double> distances() const;
@@ -53,9 +58,9 @@ struct Workload {
 
 /// How far distances are from the right ones.
 struct DistanceError {
-    uint64_t missed = 0; // answered as a miss where the right answer is a hit
-    double largest = 0;  // |t - right t| / |right t| where both hit, even different triangles
-    double rms = 0;      // the root mean square of the same
+    double largest = 0;      // |t - right t| / |right t| where both hit, even different triangles
+    double rms = 0;          // the root mean square of the same
+    double largest_ulps = 0; // |t - right t| in units of the last place of a float at right t
 };
 
 /// Returns the errors of `distances`, which has the size of `right` (asserted). Where the right t
@@ -65,6 +70,9 @@ DistanceError distance_error(std::span<const double> distances, std::span<const 
 /// Returns a workload that answers the rays. Its answers are the triangles' ids, mesh in the upper
 /// half, or 1 and 0 for occlusion.
 Workload ray_workload(RaySet set);
+
+/// Rounds the workload's rays to floats, so that contenders that take floats answer the same rays.
+void round_rays(Workload& workload);
 
 /// Returns a workload that renders a frame with shadows; its answers are pixels. `scene` must
 /// outlive it.

@@ -5,13 +5,13 @@
 #include "host/arguments/memory_size.h"
 #include "host/command/command.h"
 #include "host/output/output.h"
-#include "host/report/optics/optics.h"
-#include "host/report/page/report_page.h"
-#include "host/report/stability/leak_cases.h"
-#include "host/report/stability/stability_grid.h"
-#include "host/report/stability/stability_meshes.h"
-#include "host/report/stability/stability_table.h"
+#include "host/report/make_report.h"
 #include "host/scene/scene_source.h"
+#include "host/suites/optics/optics.h"
+#include "host/suites/stability/leak_cases.h"
+#include "host/suites/stability/stability_grid.h"
+#include "host/suites/stability/stability_meshes.h"
+#include "host/suites/stability/stability_table.h"
 #include "host/terminal/interrupt.h"
 
 #include <fmt/format.h>
@@ -27,9 +27,10 @@
 namespace ovc {
 
 static constexpr const char* kReportExamples =
-    R"(The page is DIR/index.html, with all it needs within; beside it lie summary.md, the figures of
-each experiment as NAME.json, the plots, and in raw/ what each run left. Runs that are done are not
-repeated. Ctrl-C ends the run that goes on; the same command goes on from there. It needs gnuplot.
+    R"(Each experiment writes DIR/NAME.json; then tools/report, a Python program, makes DIR/index.html of
+what is there, with the figures in DIR/page.json. Runs that are done are not repeated. Ctrl-C ends the
+run that goes on; the same command goes on from there. The page needs python3-matplotlib and
+python3-jinja2; without them the JSON is written all the same.
 
 stability: rays at the edges and vertices of closed meshes, near and far; slivers, duplicates, deep
 trees; a ground of 1e7 m with detail of 1 mm; grazing rays, rays along axes and in planes; NaN and
@@ -49,7 +50,8 @@ with an error when certified mode, or the shading over it, answered anything wro
 
 Examples:
   overcast report -o out --quick                       the page, in minutes
-  overcast report -o out --data DATA                   with the Stanford dragon, up to two hours
+  overcast report -o out --data DATA                   with real scenes too, up to two hours
+  overcast report -o out --quick --compare before      beside another report: what changed
   overcast report --only stability --quick             a minute
   overcast report --only stability -o out              out/stability.md and out/stability.json too
   overcast report --only leaks --rays 1e8 -o out       the long run; the files grow case by case)";
@@ -60,6 +62,8 @@ struct ReportArguments {
     std::string only;
     std::string folder;
     std::string data;
+    std::string compare;
+    std::string kit;
     std::string backend = "two-level";
     std::string device;
     std::string kernel = "auto";
@@ -321,16 +325,16 @@ Result<ReportJob> page_job(const ReportArguments& given) {
     job.folder = given.folder;
     job.plan.quick = given.quick;
     job.plan.scenes = given.scenes;
+    job.plan.data = given.data;
+    job.compare = given.compare;
+    job.kit = given.kit;
     if (!given.size.empty())
         if (const Result<ImageSize> size = parse_size("--size", given.size); !size)
             return size.error();
     job.plan.size = given.size;
-    if (!given.data.empty()) {
-        Result<std::string> dragon = dragon_file(given.data);
-        if (!dragon)
-            return dragon.error();
-        job.plan.mesh = std::move(*dragon);
-    }
+    if (!given.data.empty())
+        if (const Result<std::string> dragon = dragon_file(given.data); dragon)
+            job.plan.mesh = *dragon;
     return job;
 }
 
@@ -365,10 +369,15 @@ public:
             ->type_name("N");
         app.add_option("--case", given_.name_part, "Only the cases with this in their name")
             ->type_name("TEXT");
-        app.add_option(
-               "--data", given_.data,
-               "A folder with meshes/stanford-dragon/dragon_vrip.ply, for cases on the dragon")
+        app.add_option("--data", given_.data,
+                       "A folder of real scenes, such as meshes/stanford-dragon/dragon_vrip.ply")
             ->type_name("DIR");
+        app.add_option("--compare", given_.compare,
+                       "The folder of another report, which the page puts beside this one")
+            ->type_name("DIR");
+        app.add_option("--kit", given_.kit,
+                       "The kit.json of a machine with a GPU, which the page shows as well")
+            ->type_name("FILE");
         app.add_option(
                "--backend", given_.backend,
                "What is asked: two-level (the default) or another that `overcast trace` has")

@@ -83,6 +83,17 @@ class Tree:
         self.assertEqual(loaded_from(*command, "--backend", "single-texture", name="libovercast"),
                          {str(self.libraries / "overcast/libovercast-thesis.so")})
 
+    def test_the_command_finds_what_makes_a_page(self):
+        report = self.folder / "report"
+        made = subprocess.run([self.prefix / "bin/overcast", "report", "--quick", "--only",
+                               "pictures", "--scene", "box", "--size", "32x32", "-o", report],
+                              env=CLEAN, capture_output=True, text=True, timeout=300)
+        self.assertTrue((report / "pictures.json").exists(), made.stderr)
+        if made.returncode:
+            self.assertIn("apt install", made.stderr)
+        else:
+            self.assertIn("<img", (report / "index.html").read_text())
+
     def test_the_manual_and_the_completions_are_what_the_command_says(self):
         command = self.prefix / "bin/overcast"
         share = self.prefix / "share"

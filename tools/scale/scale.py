@@ -32,7 +32,11 @@ def run_once(overcast, scene, size, ranks, folder):
         command = (["mpirun", "--oversubscribe", "--bind-to", "none", "-n", str(ranks)] + command +
                    ["--ranks-own", "share"])
     subprocess.run(command, check=True, env=ENVIRONMENT)
-    told = json.loads(stats.read_text())
+    return rates_of(json.loads(stats.read_text()), ranks)
+
+
+def rates_of(told, ranks):
+    """What the model wants to know of the statistics of a picture by so many ranks."""
     rays = told["rays"]
     total = sum(rays.values())
     sent = sum(r["rays_sent"] for r in told["of_ranks"])
@@ -115,8 +119,8 @@ def check(arguments):
 def visits_at(rates, ranks):
     """Visits a ray, extended by the cube root of ranks, as blocks of a volume lie on a line."""
     runs = rates["runs"]
-    slope = statistics.mean((runs[str(n)]["visits_per_ray"] - 1) / (n ** (1 / 3) - 1)
-                            for n in COUNTS if n > 1)
+    slope = statistics.mean((run["visits_per_ray"] - 1) / (int(n) ** (1 / 3) - 1)
+                            for n, run in runs.items() if int(n) > 1)
     return 1 + slope * (ranks ** (1 / 3) - 1)
 
 

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// An Experiment describes something that the report measures: which commands it runs, which numbers
-// it reads from their JSON, and how the page shows them. A new experiment is a file and a row.
+// An Experiment describes something that the report measures: which commands it runs. What they
+// print as JSON is kept as it is; tools/report makes figures of it.
 #pragma once
 
 #include "core/result.h"
-#include "host/report/page/page_model.h"
+
+#include <nlohmann/json.hpp>
 
 #include <span>
 #include <string>
@@ -13,48 +14,58 @@
 
 namespace ovc {
 
+using Json = nlohmann::ordered_json;
+
 struct ReportPlan {
     bool quick = false;
-    std::string mesh;                // the file of the Stanford dragon; empty: generated scenes
+    std::string data;                // a folder of real files; empty: generated scenes alone
+    std::string mesh = {};           // its scan of the Stanford dragon; empty: generated scenes
     std::vector<std::string> scenes; // replace the scenes of each experiment; empty: its own
     std::string size = {};           // WxH, replaces the --size of every run; empty: its own
 };
 
-/// One command of this program. In `words`, "{}" stands for the run's own empty folder.
-struct ReportRun {
-    std::string key;                // names its file: letters, digits and dashes
-    std::vector<std::string> words; // without the program: "bench", "--json", "{}/bench.json"
-    std::string result;             // the JSON file that it writes in the folder
-    double seconds = 10;            // expected on two cores
-    bool may_refuse = false;        // its error is a result as well: {"refused": "..."}
-    /// A picture that it writes as well. A .png is kept as it is, an .exr as leaf_patches() of it.
-    std::string picture = {};
-    std::vector<std::string> variables = {}; // of its environment: "NAME=VALUE"
-};
+using Words = std::vector<std::string>;
 
-/// The result of a run.
-struct RawResult {
-    ReportRun run;
-    Json result;
-    std::string picture = {}; // .png, within the report's folder; empty: none
+/// One command of this program. In words, "{}" stands for the run's own empty folder.
+struct ReportRun {
+    std::string key;          // unlike others of the experiment: letters, digits, dashes
+    Words words;              // without the program: "bench", "--json", "{}/bench.json"
+    std::string result;       // the JSON file that it writes in the folder
+    double seconds = 5;       // expected on two cores
+    Words before = {};        // a command of this program that runs first; empty: none
+    uint32_t ranks = 0;       // under mpirun with so many processes; 0: without it
+    Words variables = {};     // of its environment: "NAME=VALUE"
+    std::string picture = {}; // a picture that it writes as well: .png, or .exr with leaf numbers
+    bool may_refuse = false;  // its error is a result as well: {"refused": "..."}
+    bool timed = true;        // whether other programs on the machine disturb its result
 };
 
 struct Experiment {
     std::string_view name;  // "error"
-    std::string_view title; // "Error against run time"
     std::string_view about; // a sentence for --help
     std::vector<ReportRun> (*runs)(const ReportPlan& plan);
-    /// Returns every number of the section. results: at least one, in the order of the runs, some
-    /// of which may be missing.
-    Json (*figures)(std::span<const RawResult> results);
-    /// Returns the section's blocks, made from the figures alone.
-    std::vector<Block> (*blocks)(const Json& figures);
 };
 
-/// Returns all experiments in the order of the page.
+/// Returns all experiments in the order in which they run.
 std::span<const Experiment> experiments();
 
 /// Returns the experiment of this name. Error: there is none.
 Result<const Experiment*> find_experiment(const std::string& name);
+
+/// Returns the words and then more of them.
+Words with_words(Words words, const Words& more);
+
+// What each experiment runs.
+std::vector<ReportRun> error_runs(const ReportPlan& plan);
+std::vector<ReportRun> samples_runs(const ReportPlan& plan);
+std::vector<ReportRun> tessellation_runs(const ReportPlan& plan);
+std::vector<ReportRun> stiff_runs(const ReportPlan& plan);
+std::vector<ReportRun> left_out_runs(const ReportPlan& plan);
+std::vector<ReportRun> growth_runs(const ReportPlan& plan);
+std::vector<ReportRun> memory_runs(const ReportPlan& plan);
+std::vector<ReportRun> machines_runs(const ReportPlan& plan);
+std::vector<ReportRun> programs_runs(const ReportPlan& plan);
+std::vector<ReportRun> thesis_runs(const ReportPlan& plan);
+std::vector<ReportRun> pictures_runs(const ReportPlan& plan);
 
 } // namespace ovc

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Executes one run after another and tells how much time is left.
+// Executes one run after another, notes the machine's load beside each, and tells how much time is
+// left.
 #include "host/report/experiments/run_experiments.h"
 
+#include "core/system/parallel.h"
 #include "host/bench/programs/run_program.h"
+#include "host/doctor/machine_load.h"
+#include "host/output/leaf_patches.h"
 #include "host/output/output.h"
-#include "host/report/experiments/leaf_patches.h"
-#include "host/report/experiments/raw_results.h"
+#include "host/report/experiments/experiment_file.h"
 #include "host/terminal/terminal_line.h"
 
 #include <fmt/format.h>
@@ -23,6 +26,10 @@ namespace fs = std::filesystem;
 /// machines differ and are shared.
 constexpr double kPatience = 20;
 constexpr double kMinLimit = 300;
+
+constexpr double kQuiet = 0.1;      // of all cores, for other programs
+constexpr double kForRepeats = 0.1; // of the time that all is expected to take
+constexpr int kMaxAttempts = 3;
 
 /// The empty folder of a run, which the destructor removes.
 class RunFolder {
@@ -43,20 +50,25 @@ private:
     std::error_code error_;
 };
 
-std::vector<std::string> words_of(const ReportRun& run, const std::string& program,
-                                  const std::string& folder) {
-    std::vector<std::string> words;
-    if (!run.variables.empty()) {
-        words.push_back("env");
-        words.insert(words.end(), run.variables.begin(), run.variables.end());
-    }
-    words.push_back(program);
-    for (std::string word : run.words) {
+Words in_folder(Words words, const std::string& folder) {
+    for (std::string& word : words)
         if (const size_t at = word.find("{}"); at != std::string::npos)
             word.replace(at, 2, folder);
-        words.push_back(std::move(word));
-    }
     return words;
+}
+
+/// Returns the words of the run's own command. Open MPI refuses root, and more processes than
+/// cores, unless it is told otherwise.
+Words command_words(const ReportRun& run, const std::string& program, const std::string& folder) {
+    Words words = {"env"};
+    words = with_words(std::move(words), run.variables);
+    if (run.ranks > 0)
+        words = with_words(std::move(words),
+                           {"OMPI_ALLOW_RUN_AS_ROOT=1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1",
+                            "OMPI_MCA_mpi_yield_when_idle=1", "mpirun", "--oversubscribe",
+                            "--bind-to", "none", "-n", std::to_string(run.ranks)});
+    words.push_back(program);
+    return in_folder(with_words(std::move(words), run.words), folder);
 }
 
 Json read_json(const fs::path& path) {
@@ -64,130 +76,165 @@ Json read_json(const fs::path& path) {
     return Json::parse(file, nullptr, /* allow_exceptions= */ false);
 }
 
-Result<std::string> read_bytes(const fs::path& path) {
+Result<std::string> png_of(const fs::path& path) {
+    if (path.extension() == ".exr")
+        return leaf_patches(path);
     std::ifstream file(path, std::ios::binary);
     std::string bytes{std::istreambuf_iterator<char>(file), {}};
     return bytes.empty() ? Result<std::string>(Error{path.string() + " is not there"})
                          : std::move(bytes);
 }
 
-/// Tells how far the whole report is, in expected seconds.
-class Clock {
-public:
-    void expect(double seconds) { expected_ += seconds, ++runs_; }
-    void done(const ReportRun& run, double seconds) {
-        expected_done_ += run.seconds;
-        taken_ += seconds;
-        ++runs_done_;
-    }
-    /// Returns "2 of 9 runs, 3 min left", estimated from the time that runs took so far.
-    std::string text() const {
-        const double pace = expected_done_ > 0 ? taken_ / expected_done_ : 1;
-        return fmt::format("{} of {} runs, {}", runs_done_ + 1, runs_,
-                           time_left(pace * (expected_ - expected_done_)));
-    }
+uint64_t bytes_below(const fs::path& folder) {
+    uint64_t bytes = 0;
+    std::error_code error;
+    for (const fs::directory_entry& file : fs::recursive_directory_iterator(folder, error))
+        bytes += file.is_regular_file() ? file.file_size() : 0;
+    return bytes;
+}
 
-private:
-    double expected_ = 0, expected_done_ = 0, taken_ = 0;
-    size_t runs_ = 0, runs_done_ = 0;
+/// An attempt at a run: how its program ended, what it left, and what else went on.
+struct Attempt {
+    ProgramEnd end;
+    Json result;
+    std::string png; // empty: none
+    Json trouble;    // a sentence, or null
+    uint64_t kernel_bytes = 0;
+    double load_before = 0, load_after = 0;
+    double others = 0; // cores
 };
 
 class Runner {
 public:
     explicit Runner(const RunSurroundings& around) : around_(around) {}
 
-    void expect(const Experiment& experiment, std::span<const ReportRun> runs) {
-        for (const ReportRun& run : runs)
-            if (!load_raw(path_of(experiment, run), run))
-                clock_.expect(run.seconds);
+    void expect(const ReportRun& run) {
+        expected_ += run.seconds, ++runs_;
+        for_repeats_ = kForRepeats * expected_;
     }
 
-    /// Returns whether the run is done: earlier, or now where it `may_run`. Returns false where it
-    /// was stopped.
-    Result<bool> go(const ReportRun& run, bool may_run, Outcome& outcome) {
-        const Experiment& experiment = *outcome.experiment;
-        const fs::path path = path_of(experiment, run);
-        if (std::optional<RawResult> there = load_raw(path, run)) {
-            outcome.results.push_back(std::move(*there));
-            return true;
-        }
-        if (!may_run || around_.stop())
-            return false;
-        around_.show(fmt::format("{}: {}, {}", experiment.name, run.key, clock_.text()));
-        const RunFolder own(fs::path(path).replace_extension(".part"));
-        if (own.error())
-            return Error{fmt::format("cannot make the folder '{}': {}", own.path().string(),
-                                     own.error().message())};
-        const Result<ProgramEnd> end =
-            watch_program(words_of(run, around_.program, own.path()),
-                          std::max(kMinLimit, kPatience * run.seconds), around_.stop);
-        if (!end)
-            return end.error();
-        if (end->stopped)
-            return false;
-        clock_.done(run, end->seconds);
-        return keep(run, *end, own.path() / run.result, outcome);
+    /// Returns false where the run was stopped.
+    Result<bool> go(const Experiment& experiment, const ReportRun& run, ExperimentFile& file) {
+        around_.show(fmt::format("{}: {}, {} of {} runs, {}", experiment.name, run.key,
+                                 runs_done_ + 1, runs_, time_left(pace() * left())));
+        std::optional<Attempt> best;
+        int attempts = 0;
+        do {
+            Result<Attempt> one = attempt(run);
+            if (!one)
+                return one.error();
+            if (one->end.stopped)
+                return false;
+            ++attempts;
+            if (attempts > 1)
+                for_repeats_ -= one->end.seconds;
+            if (!best || (one->trouble.is_null() && one->others < best->others))
+                best = std::move(*one);
+        } while (run.timed && !is_quiet(*best) && best->trouble.is_null() &&
+                 attempts < kMaxAttempts && best->end.seconds <= for_repeats_);
+        expected_done_ += run.seconds, taken_ += best->end.seconds, ++runs_done_;
+        return keep(run, *best, attempts, file);
     }
 
 private:
-    fs::path path_of(const Experiment& experiment, const ReportRun& run) const {
-        return raw_path(around_.folder, experiment, run, around_.build);
+    double pace() const { return expected_done_ > 0 ? taken_ / expected_done_ : 1; }
+    double left() const { return expected_ - expected_done_; }
+    static bool is_quiet(const Attempt& attempt) {
+        return attempt.others <= kQuiet * double(thread_count());
     }
 
-    /// Keeps the result of a command that ended by itself, also where it found something wrong and
+    Result<Attempt> attempt(const ReportRun& run) {
+        const RunFolder own(around_.folder / "part");
+        if (own.error())
+            return Error{fmt::format("cannot make the folder '{}': {}", own.path().string(),
+                                     own.error().message())};
+        Attempt attempt;
+        attempt.load_before = load_average();
+        if (!run.before.empty()) {
+            const Result<ProgramEnd> first =
+                execute(with_words({around_.program}, in_folder(run.before, own.path())), run);
+            if (!first)
+                return first.error();
+            if (first->exit_code != 0)
+                return failed(*first);
+        }
+        const OtherLoad others;
+        const Result<ProgramEnd> end =
+            execute(command_words(run, around_.program, own.path()), run);
+        if (!end)
+            return end.error();
+        attempt.end = *end;
+        attempt.others = others.cores(end->cpu_seconds);
+        attempt.load_after = load_average();
+        attempt.kernel_bytes = bytes_below(own.path() / "kernels");
+        read(run, own.path(), attempt);
+        return attempt;
+    }
+
+    Result<ProgramEnd> execute(const Words& words, const ReportRun& run) const {
+        return watch_program(words, std::max(kMinLimit, kPatience * run.seconds), around_.stop);
+    }
+
+    static Attempt failed(const ProgramEnd& end) {
+        Attempt attempt;
+        attempt.end = end;
+        attempt.trouble =
+            end.too_long ? fmt::format("ended after {:.0f} s", end.seconds) : end.said;
+        return attempt;
+    }
+
+    /// Takes the result of a command that ended by itself, also where it found something wrong and
     /// says so. The result of a command that was killed does not count.
-    Result<bool> keep(const ReportRun& run, const ProgramEnd& end, const fs::path& left,
-                      Outcome& outcome) {
-        RawResult raw{run, {}};
+    static void read(const ReportRun& run, const fs::path& folder, Attempt& attempt) {
+        const ProgramEnd end = attempt.end;
         if (end.exit_code == 0 || end.exit_code == 1)
-            raw.result = read_json(left);
-        if (end.exit_code == 1 && run.may_refuse && !raw.result.is_object()) {
-            raw.result = {{"refused", end.said}};
-            return keep(std::move(raw), end.seconds, outcome);
+            attempt.result = read_json(folder / run.result);
+        if (end.exit_code == 1 && run.may_refuse && !attempt.result.is_object()) {
+            attempt.result = {{"refused", end.said}};
+            return;
         }
-        if (end.too_long || !raw.result.is_object()) {
-            outcome.failures.push_back(fmt::format(
-                "{}: {}", run.key,
-                end.too_long ? fmt::format("ended after {:.0f} s", end.seconds) : end.said));
-            return true;
-        }
-        if (const Result<Done> kept = keep_picture(raw, left.parent_path(), *outcome.experiment);
-            !kept) {
-            outcome.failures.push_back(fmt::format("{}: {}", run.key, kept.error().message));
-            return true;
-        }
-        if (end.exit_code == 0)
-            return keep(std::move(raw), end.seconds, outcome);
-        outcome.remarks.push_back(fmt::format("{}: {}", run.key, end.said));
-        outcome.results.push_back(std::move(raw)); // not saved, so that it runs again next time
-        return true;
+        if (end.too_long || !attempt.result.is_object())
+            attempt = failed(end);
+        else if (end.exit_code != 0)
+            attempt.trouble = end.said;
+        if (run.picture.empty() || !attempt.trouble.is_null())
+            return;
+        Result<std::string> png = png_of(folder / run.picture);
+        if (png)
+            attempt.png = std::move(*png);
+        else
+            attempt.trouble = png.error().message;
     }
 
-    /// Writes the run's picture beside its result, from an .exr file the patches of leaves.
-    Result<Done> keep_picture(RawResult& raw, const fs::path& left, const Experiment& experiment) {
-        if (raw.run.picture.empty())
-            return Done{};
-        const fs::path from = left / raw.run.picture;
-        const Result<std::string> png =
-            from.extension() == ".exr" ? leaf_patches(from) : read_bytes(from);
-        if (!png)
-            return png.error();
-        const fs::path to = picture_path(path_of(experiment, raw.run));
-        raw.picture = picture_in_report(to);
-        return save_text(*png, to);
-    }
-
-    Result<bool> keep(RawResult raw, double seconds, Outcome& outcome) {
-        if (const Result<Done> saved =
-                save_raw(path_of(*outcome.experiment, raw.run), raw, around_.build, seconds);
-            !saved)
-            return saved.error();
-        outcome.results.push_back(std::move(raw));
-        return true;
+    static Result<bool> keep(const ReportRun& run, Attempt& best, int attempts,
+                             ExperimentFile& file) {
+        Json one = {{"key", run.key},
+                    {"command", command_of(run)},
+                    {"seconds", best.end.seconds},
+                    {"cpu_seconds", best.end.cpu_seconds},
+                    {"attempts", attempts},
+                    {"load",
+                     {{"before", best.load_before},
+                      {"others_during", best.others},
+                      {"after", best.load_after}}},
+                    {"quiet", is_quiet(best)},
+                    {"trouble", best.trouble}};
+        if (best.kernel_bytes > 0)
+            one["kernel_bytes"] = best.kernel_bytes;
+        if (!best.png.empty()) {
+            const fs::path path = file.picture_path(run);
+            if (const Result<Done> saved = save_text(best.png, path); !saved)
+                return saved.error();
+            one["picture"] = (path.parent_path().filename() / path.filename()).string();
+        }
+        one["result"] = best.result.is_object() ? std::move(best.result) : Json(nullptr);
+        const Result<Done> kept = file.keep(std::move(one));
+        return kept ? Result<bool>(true) : kept.error();
     }
 
     const RunSurroundings& around_;
-    Clock clock_;
+    double expected_ = 0, expected_done_ = 0, taken_ = 0, for_repeats_ = 0;
+    size_t runs_ = 0, runs_done_ = 0;
 };
 
 std::vector<ReportRun> runs_of(const Experiment& experiment, const ReportPlan& plan) {
@@ -202,29 +249,41 @@ std::vector<ReportRun> runs_of(const Experiment& experiment, const ReportPlan& p
 
 } // namespace
 
-Result<std::vector<Outcome>> run_experiments(std::span<const Experiment> experiments,
-                                             std::string_view chosen, const ReportPlan& plan,
-                                             const RunSurroundings& around) {
-    const auto is_chosen = [&](const Experiment& one) {
-        return chosen.empty() || one.name == chosen;
-    };
+Result<std::vector<std::string>> run_experiments(std::span<const Experiment> experiments,
+                                                 std::string_view chosen, const ReportPlan& plan,
+                                                 const RunSurroundings& around) {
     Runner runner(around);
-    for (const Experiment& experiment : experiments)
-        if (is_chosen(experiment))
-            runner.expect(experiment, runs_of(experiment, plan));
-    std::vector<Outcome> outcomes;
-    for (const Experiment& experiment : experiments) {
-        Outcome& outcome = outcomes.emplace_back();
-        outcome.experiment = &experiment;
-        outcome.complete = true;
-        for (const ReportRun& run : runs_of(experiment, plan)) {
-            const Result<bool> done = runner.go(run, is_chosen(experiment), outcome);
+    struct Part {
+        const Experiment* experiment;
+        std::vector<ReportRun> runs;
+        ExperimentFile file;
+    };
+    std::vector<Part> parts;
+    for (const Experiment& one : experiments)
+        if (chosen.empty() || one.name == chosen)
+            parts.push_back({&one, runs_of(one, plan), {around.folder, one, plan, around.build}});
+    for (const Part& part : parts)
+        for (const ReportRun& run : part.runs)
+            if (!part.file.has(run))
+                runner.expect(run);
+    std::vector<std::string> troubles;
+    for (Part& part : parts) {
+        for (const ReportRun& run : part.runs) {
+            if (part.file.has(run))
+                continue;
+            const Result<bool> done =
+                around.stop() ? false : runner.go(*part.experiment, run, part.file);
             if (!done)
                 return done.error();
-            outcome.complete = outcome.complete && *done;
+            if (!*done)
+                break;
         }
+        if (const Result<bool> finished = part.file.finish(part.runs); !finished)
+            return finished.error();
+        for (std::string& trouble : part.file.troubles())
+            troubles.push_back(std::move(trouble));
     }
-    return outcomes;
+    return troubles;
 }
 
 } // namespace ovc

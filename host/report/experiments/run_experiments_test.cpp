@@ -4,7 +4,7 @@
 #include "host/report/experiments/run_experiments.h"
 
 #include "host/bench/programs/scratch_folder.h"
-#include "host/report/experiments/raw_results.h"
+#include "host/report/experiments/experiment_file.h"
 
 #include <gmock/gmock.h>
 
@@ -17,14 +17,14 @@ namespace fs = std::filesystem;
 
 class RunExperiments : public testing::Test {
 protected:
-    void SetUp() override {
-        fs::create_directories(scratch.path() / "raw" / "scripts");
-        scripts.clear();
-    }
+    void SetUp() override { scripts.clear(); }
 
     /// Adds a script that writes result.json to its own folder, $0.
-    void add(const std::string& key, const std::string& script) {
-        scripts.push_back({key, {"-c", script, "{}"}, "result.json", 1});
+    ReportRun& add(const std::string& key, const std::string& script) {
+        ReportRun run{key, {"-c", script, "{}"}, "result.json", 1};
+        run.timed = false;
+        scripts.push_back(run);
+        return scripts.back();
     }
     /// Returns a script that also adds a line to the file `name` each time it runs.
     std::string counted(const std::string& name, const std::string& script) const {
@@ -37,17 +37,21 @@ protected:
             ++lines;
         return lines;
     }
-    Outcome run(
+    /// Returns the troubles.
+    std::vector<std::string> run(
         const std::function<bool()>& stop = [] { return false; },
-        std::string_view chosen = "") const {
-        const Experiment experiment{
-            "scripts", "Scripts", "shell scripts", [](const ReportPlan&) { return scripts; },
-            {},        {}};
-        Result<std::vector<Outcome>> outcomes =
-            run_experiments(std::span(&experiment, 1), chosen, {},
-                            {"sh", "a build", scratch.path(), stop, [](const std::string&) {}});
-        EXPECT_TRUE(outcomes);
-        return outcomes->at(0);
+        const std::string& build = "a build") const {
+        const Experiment experiment{"scripts", "shell scripts",
+                                    [](const ReportPlan&) { return scripts; }};
+        const auto troubles =
+            run_experiments(std::span(&experiment, 1), "", {},
+                            {"sh", build, scratch.path(), stop, [](const std::string&) {}});
+        EXPECT_TRUE(troubles);
+        return *troubles;
+    }
+    Json file() const {
+        std::ifstream in(scratch.path() / "scripts.json");
+        return Json::parse(in);
     }
 
     static std::vector<ReportRun> scripts; // static, because Experiment::runs cannot capture
@@ -60,37 +64,44 @@ TEST_F(RunExperiments, KeepResultsAndDoNotRepeatThem) {
     add("one", counted("one", "echo '{\"n\": 1}' > $0/result.json"));
     add("two", counted("two", "echo '{\"n\": 2}' > $0/result.json"));
     for (int again = 0; again < 2; ++again) {
-        const Outcome outcome = run();
-        ASSERT_EQ(outcome.results.size(), 2u);
-        EXPECT_EQ(outcome.results[0].result["n"], 1);
-        EXPECT_EQ(outcome.results[1].result["n"], 2);
-        EXPECT_TRUE(outcome.complete);
+        EXPECT_THAT(run(), testing::IsEmpty());
+        EXPECT_EQ(file()["schema"], "overcast-report-1");
+        EXPECT_EQ(file()["complete"], true);
+        ASSERT_EQ(file()["runs"].size(), 2u);
+        EXPECT_EQ(file()["runs"][1]["result"]["n"], 2);
+        EXPECT_EQ(file()["runs"][1]["attempts"], 1);
+        EXPECT_TRUE(file()["runs"][1]["load"]["others_during"].is_number());
     }
     EXPECT_EQ(times("one"), 1u);
-    EXPECT_EQ(times("two"), 1u);
-    EXPECT_EQ(std::distance(fs::directory_iterator(scratch.path() / "raw" / "scripts"), {}), 2);
+    run([] { return false; }, "another build");
+    EXPECT_EQ(times("one"), 2u);
+    scripts[0].words[1] += " # another command";
+    run([] { return false; }, "another build");
+    EXPECT_EQ(times("one"), 3u);
+    EXPECT_EQ(times("two"), 2u);
 }
 
-TEST_F(RunExperiments, SetVariablesOfTheEnvironment) {
-    add("plain", "echo \"{\\\"n\\\": \\\"$OF_A_RUN\\\"}\" > $0/result.json");
-    scripts.push_back(scripts[0]);
-    scripts[1].variables = {"OF_A_RUN=set"};
-    const Outcome outcome = run();
-    ASSERT_EQ(outcome.results.size(), 2u);
-    EXPECT_EQ(outcome.results[0].result["n"], "");
-    EXPECT_EQ(outcome.results[1].result["n"], "set")
-        << "another command, so not the first's result";
+TEST_F(RunExperiments, SetVariablesAndRunWhatComesBefore) {
+    ReportRun& one = add("one", "echo \"{\\\"n\\\": \\\"$OF_A_RUN $(cat $0/made)\\\"}\" > "
+                                "$0/result.json; mkdir $0/kernels; echo 12345 > $0/kernels/k");
+    one.variables = {"OF_A_RUN=set"};
+    one.before = {"-c", "echo made > $0/made", "{}"};
+    EXPECT_THAT(run(), testing::IsEmpty());
+    EXPECT_EQ(file()["runs"][0]["result"]["n"], "set made");
+    EXPECT_EQ(file()["runs"][0]["kernel_bytes"], 6);
 }
 
 TEST_F(RunExperiments, SayWhatFailedAndGoOn) {
     add("bad", "echo the reason >&2; exit 1");
     add("broken", "echo '{\"n\": ' > $0/result.json");
+    add("refused", "echo too large >&2; exit 1").may_refuse = true;
     add("good", "echo '{\"n\": 3}' > $0/result.json");
-    const Outcome outcome = run();
-    EXPECT_THAT(outcome.failures,
-                testing::ElementsAre("bad: the reason", testing::StartsWith("broken: ")));
-    ASSERT_EQ(outcome.results.size(), 1u);
-    EXPECT_EQ(outcome.results[0].run.key, "good");
+    EXPECT_THAT(run(), testing::ElementsAre("scripts, bad: the reason",
+                                            testing::StartsWith("scripts, broken: ")));
+    ASSERT_EQ(file()["runs"].size(), 4u);
+    EXPECT_TRUE(file()["runs"][0]["result"].is_null());
+    EXPECT_EQ(file()["runs"][2]["result"]["refused"], "too large");
+    EXPECT_EQ(file()["runs"][3]["result"]["n"], 3);
 }
 
 /// Commands that find wrong answers write their figures all the same.
@@ -98,9 +109,8 @@ TEST_F(RunExperiments, TakeFiguresOfARunThatFoundSomethingWrongAndRunItAgain) {
     add("wrong",
         counted("wrong", "echo '{\"n\": 4}' > $0/result.json; echo 4 are wrong >&2; exit 1"));
     for (int again = 0; again < 2; ++again) {
-        const Outcome outcome = run();
-        ASSERT_EQ(outcome.results.size(), 1u);
-        EXPECT_THAT(outcome.remarks, testing::ElementsAre("wrong: 4 are wrong"));
+        EXPECT_THAT(run(), testing::ElementsAre("scripts, wrong: 4 are wrong"));
+        EXPECT_EQ(file()["runs"][0]["result"]["n"], 4);
     }
     EXPECT_EQ(times("wrong"), 2u);
 }
@@ -109,29 +119,14 @@ TEST_F(RunExperiments, ForgetWhatWasStopped) {
     add("first", "echo '{\"n\": 1}' > $0/result.json");
     add("second", "echo '{\"n\": 2}' > $0/result.json; exec sleep 50");
     int looks = 0;
-    const fs::path first =
-        raw_path(scratch.path(), Experiment{"scripts", "", "", {}, {}, {}}, scripts[0], "a build");
-    const Outcome outcome = run([&] { return fs::exists(first) && ++looks > 3; });
-    EXPECT_FALSE(outcome.complete);
-    EXPECT_EQ(outcome.results.size(), 1u);
-    EXPECT_EQ(std::distance(fs::directory_iterator(first.parent_path()), {}), 1)
-        << "the folder of the second is gone";
-}
-
-TEST_F(RunExperiments, TakeWhatIsThereOfThoseThatAreNotChosen) {
-    add("one", "echo '{\"n\": 1}' > $0/result.json");
-    add("two", counted("two", "echo '{\"n\": 2}' > $0/result.json"));
-    EXPECT_FALSE(run([] { return false; }, "another").complete);
-    EXPECT_EQ(times("two"), 0u);
-    EXPECT_TRUE(run([] { return false; }, "scripts").complete);
-    const Outcome outcome = run([] { return false; }, "another");
-    EXPECT_TRUE(outcome.complete);
-    EXPECT_EQ(outcome.results.size(), 2u);
-    EXPECT_EQ(times("two"), 1u);
+    run([&] { return fs::exists(scratch.path() / "scripts.json") && ++looks > 3; });
+    EXPECT_EQ(file()["complete"], false);
+    EXPECT_EQ(file()["runs"].size(), 1u);
+    EXPECT_FALSE(fs::exists(scratch.path() / "part"));
 }
 
 /// A program that is built anew, or that loads another library, is another build.
-TEST(RawResults, AreOfOneBuild) {
+TEST(BuildText, IsOfTheProgramAndItsLibraries) {
     const ScratchFolder scratch = std::move(*ScratchFolder::make());
     const fs::path program = scratch.path() / "program";
     const auto build_of = [&](const std::string& text) {
@@ -146,25 +141,6 @@ TEST(RawResults, AreOfOneBuild) {
     ::setenv("OVC_PLUGIN", library.c_str(), /* overwrite= */ 1);
     EXPECT_NE(build_text(program), first);
     ::unsetenv("OVC_PLUGIN");
-    const Experiment experiment{"e", "", "", {}, {}, {}};
-    EXPECT_NE(raw_path("", experiment, {}, "one"), raw_path("", experiment, {}, "two"));
-}
-
-TEST(RawResults, AreOfOneCommand) {
-    const ScratchFolder scratch = std::move(*ScratchFolder::make());
-    const Experiment experiment{"e", "", "", {}, {}, {}};
-    const ReportRun run{"key", {"bench", "--size", "8x8"}, "r.json", 1};
-    const fs::path path = raw_path(scratch.path(), experiment, run, "a build");
-    ReportRun other = run;
-    other.words[2] = "9x9";
-    EXPECT_NE(raw_path(scratch.path(), experiment, other, "a build"), path);
-    EXPECT_FALSE(load_raw(path, run));
-    fs::create_directories(path.parent_path());
-    ASSERT_TRUE(save_raw(path, {run, {{"x", 5}}}, "a build", 1.5));
-    ASSERT_TRUE(load_raw(path, run));
-    EXPECT_EQ(load_raw(path, run)->result["x"], 5);
-    fs::resize_file(path, fs::file_size(path) - 5);
-    EXPECT_FALSE(load_raw(path, run));
 }
 
 } // namespace
