@@ -87,8 +87,9 @@ part memory 90 $overcast bench $scene --only certified-compute --workloads prima
     --json results/memory.json
 part moving 90 $overcast bench $scene --only certified-compute --workloads primary,diffuse \
     --resident 30%,all --size $size --repeats $repeats $for_device --json results/moving.json
-[ $short = 1 ] || part bars 150 $overcast bench $scene --bars --scene-alone --size $size \
-    --repeats $repeats $for_device --json results/bars.json
+# A line that does not hold is a result, not a failure of the kit.
+[ $short = 1 ] || part bars 150 sh -c "$overcast bench $scene --bars --scene-alone --size $size \
+    --repeats $repeats $for_device --json results/bars.json || [ -s results/bars.json ]"
 part picture 60 $overcast render scenes/box.ovc --size $size -o results/box.png $for_device \
     --stats results/picture.json
 part probe 150 sh -c "bin/gpu_probe $seconds '$device' >results/probe.json"
