@@ -62,6 +62,16 @@ TEST_F(Report, IsOneCommandThatRepeatsNothing) {
     EXPECT_THAT(bad.output, testing::HasSubstr("/dev/null is no kit.json"));
 }
 
+/// What is missing is said before anything is measured.
+TEST_F(Report, RefusesFoldersAndFilesThatAreNotThere) {
+    for (const char* option : {"--data", "--compare", "--kit"}) {
+        const test::CommandResult made = make("", std::string(option) + " /nowhere");
+        EXPECT_EQ(made.exit_code, 1);
+        EXPECT_THAT(made.output, testing::HasSubstr(option + std::string(": there is no ")));
+        EXPECT_FALSE(fs::exists(folder));
+    }
+}
+
 /// The JSON is written all the same, and the message says what to install.
 TEST_F(Report, SaysWhatIsMissingWithoutPython) {
     const fs::path tools = folder.string() + "_tools";

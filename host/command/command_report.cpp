@@ -311,6 +311,12 @@ Result<Done> check_page_words(const ReportArguments& given) {
           std::pair("--case", &given.name_part), std::pair("--device", &given.device)})
         if (!text->empty())
             return Error{fmt::format("{} goes with --only stability, leaks or grid", name)};
+    for (const auto& [name, folder] :
+         {std::pair("--data", &given.data), std::pair("--compare", &given.compare)})
+        if (!folder->empty() && !std::filesystem::is_directory(*folder))
+            return Error{fmt::format("{}: there is no folder '{}'", name, *folder)};
+    if (!given.kit.empty() && !std::filesystem::exists(given.kit))
+        return Error{fmt::format("--kit: there is no file '{}'", given.kit)};
     return Done{};
 }
 
@@ -395,10 +401,13 @@ public:
             const Result<ReportJob> job = page_job(given_);
             return job ? make_report_page(*job) : job.error();
         }
-        if (!given_.scenes.empty())
-            return Error{"--scene goes with the page, not with --only stability, leaks or grid"};
-        if (!given_.size.empty())
-            return Error{"--size goes with the page, not with --only stability, leaks or grid"};
+        for (const auto& [name, is_given] : {std::pair("--scene", !given_.scenes.empty()),
+                                             std::pair("--size", !given_.size.empty()),
+                                             std::pair("--compare", !given_.compare.empty()),
+                                             std::pair("--kit", !given_.kit.empty())})
+            if (is_given)
+                return Error{fmt::format(
+                    "{} goes with the page, not with --only stability, leaks or grid", name)};
         Result<Report> report =
             given_.only == kReports[1] ? leak_report(given_) : stability_report(given_);
         if (!report)
