@@ -88,7 +88,8 @@ ovc_result first_ranks(ovc_scene scene, const ovc_ray* rays, size_t ray_count, u
 
 bool open(double timeout_seconds) {
     HostRanks& all = host_ranks();
-    Result<std::unique_ptr<Transport>> transport = make_mpi_transport({0, timeout_seconds});
+    Result<std::unique_ptr<Transport>> transport =
+        make_mpi_transport({.timeout_seconds = timeout_seconds, .may_end_process = true});
     if (!transport)
         return false;
     all.transport = std::move(*transport);

@@ -6,6 +6,7 @@
 #include "core/text/format_text.h"
 
 #include <mpi.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
@@ -23,8 +24,9 @@ using Clock = std::chrono::steady_clock;
 constexpr double kDefaultTimeout = 60;
 constexpr int kMessageTag = 1, kHeartbeatTag = 2, kLostTag = 3, kEndTag = 4;
 
-/// What end_mpi() knows of the ranks of MPI_COMM_WORLD.
+/// The ranks of MPI_COMM_WORLD, for what is done while there is no transport.
 struct World {
+    bool may_end_process = false;
     double timeout_seconds = kDefaultTimeout;
     std::vector<std::string> names;
 };
@@ -34,9 +36,44 @@ World& world() {
     return *all;
 }
 
-/// Ends MPI, which waits for all ranks and would wait for ever for one that hangs. So each waits
-/// for the one before it first, and ends the job with a sentence where that does not come.
-void end_mpi() {
+[[noreturn]] void end_process(const std::string& sentence) {
+    std::fputs(("overcast: error: " + sentence + "\n").c_str(), stderr);
+    std::_Exit(1); // mpirun then ends the others
+}
+
+std::string name_of_this_process() {
+    char host[256] = {};
+    gethostname(host, sizeof(host) - 1);
+    const char* const rank = std::getenv("OMPI_COMM_WORLD_RANK");
+    return format_text("rank {} on {}", rank ? rank : "?", host);
+}
+
+/// While it lives, a call of MPI waits for all ranks, and would wait for ever for one that hangs.
+/// Then this ends the process, if it may.
+class LimitedWait {
+public:
+    explicit LimitedWait(const char* what) {
+        if (!world().may_end_process)
+            return;
+        thread_ = std::jthread([what](const std::stop_token& stop) {
+            std::mutex mutex;
+            std::condition_variable_any changed;
+            std::unique_lock lock(mutex);
+            const auto timeout = std::chrono::duration<double>(world().timeout_seconds);
+            changed.wait_for(lock, stop, timeout, [] { return false; });
+            if (!stop.stop_requested())
+                end_process(format_text("{} has waited {} s for another rank while {}",
+                                        name_of_this_process(), timeout.count(), what));
+        });
+    }
+
+private:
+    std::jthread thread_;
+};
+
+/// Waits for the rank before this one to come here too, and names it where it does not: while MPI
+/// ends nobody could.
+void wait_for_rank_before() {
     int rank = 0, ranks = 1, here = 1, there = 0, came = 0;
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
     MPI_Comm_size(MPI_COMM_WORLD, &ranks);
@@ -49,21 +86,18 @@ void end_mpi() {
     while (MPI_Testall(2, requests, &came, MPI_STATUSES_IGNORE) == MPI_SUCCESS && !came &&
            Clock::now() < until)
         std::this_thread::sleep_for(std::chrono::microseconds(500));
-    const auto give_up = [=](const std::string& name) {
-        const std::string sentence =
-            format_text("overcast: error: {} has given no word for {} s while the job was ending\n",
-                        name, timeout.count());
-        std::fputs(sentence.c_str(), stderr);
-        MPI_Abort(MPI_COMM_WORLD, 1);
-    };
     if (!came)
-        give_up(size_t(before) < world().names.size() ? world().names[size_t(before)]
-                                                      : format_text("rank {}", before));
-    // It may still stop between that and the end.
-    std::thread([=] {
-        std::this_thread::sleep_for(timeout);
-        give_up("a rank");
-    }).detach();
+        end_process(format_text("{} has given no word for {} s while the job was ending",
+                                size_t(before) < world().names.size()
+                                    ? world().names[size_t(before)]
+                                    : format_text("rank {}", before),
+                                timeout.count()));
+}
+
+void end_mpi() {
+    if (world().may_end_process)
+        wait_for_rank_before();
+    const LimitedWait limit("MPI ends");
     MPI_Finalize();
 }
 
@@ -109,11 +143,9 @@ public:
         gather_hosts();
         int likeness = MPI_UNEQUAL;
         MPI_Comm_compare(comm_, MPI_COMM_WORLD, &likeness);
-        if (likeness == MPI_CONGRUENT) {
-            world() = {timeout_seconds, {}};
+        if (likeness == MPI_CONGRUENT && world().names.empty())
             for (uint32_t i = 0; i < ranks_; ++i)
                 world().names.push_back(name_of(i));
-        }
         thread_ = std::thread([this] { run(); });
     }
     ~MpiTransport() override {
@@ -328,6 +360,10 @@ private:
 } // namespace
 
 Result<std::unique_ptr<Transport>> make_mpi_transport(const MpiTransportOptions& options) {
+    const double timeout = options.timeout_seconds > 0 ? options.timeout_seconds : kDefaultTimeout;
+    if (options.may_end_process)
+        world() = {true, timeout, {}};
+    const LimitedWait limit("MPI starts");
     if (const Result<Done> started = start_mpi(); !started)
         return started.error();
     const MPI_Comm given =
@@ -350,7 +386,6 @@ Result<std::unique_ptr<Transport>> make_mpi_transport(const MpiTransportOptions&
                                  options.communicator),
                      ErrorKind::InvalidArgument};
     MPI_Comm_set_errhandler(own, MPI_ERRORS_RETURN);
-    const double timeout = options.timeout_seconds > 0 ? options.timeout_seconds : kDefaultTimeout;
     return std::unique_ptr<Transport>(std::make_unique<MpiTransport>(own, timeout));
 }
 

@@ -225,6 +225,20 @@ std::string refusal(ovc_structure structure, uint32_t leaves, uint64_t leaf_tria
     return "";
 }
 
+TEST(ComparisonConfig, RefusesFieldsOfRanks) {
+    ovc_scene_config config{};
+    config.structure = OVC_STRUCTURE_GPU_GRID;
+    config.ranks_own = OVC_RANKS_OWN_SHARE;
+    try {
+        check_config(config, {});
+        ADD_FAILURE() << "nothing is refused";
+    } catch (const Failure& failure) {
+        EXPECT_EQ(failure.message,
+                  "gpu-grid is one process's: communicator, ranks_own, rank_timeout and sample are "
+                  "for libovercast-mpi.so, expected 0");
+    }
+}
+
 TEST(ComparisonConfig, RefusesWhatMeansNothing) {
     EXPECT_THAT(refusal(OVC_STRUCTURE_TWO_LEVEL, 0, 0, 0), HasSubstr("libovercast.so"));
     EXPECT_EQ(refusal(OVC_STRUCTURE_GPU_GRID, 0, 0, OVC_KERNEL_COMPUTE),

@@ -13,7 +13,7 @@ import math
 
 MESSAGE = 1 << 15       # visits a message at most: messages that follow each other count as one
 BATCH = 1 << 17        # visits a batch of the server at most, as in plugin/ranks/visit_server.cpp
-VISIT_BYTES, ANSWER_BYTES = 96, 40
+VISIT_BYTES, ANSWER_BYTES = 72, 32
 MAX_SIMULATED = 16     # ranks; of more, so many stand for all
 
 
