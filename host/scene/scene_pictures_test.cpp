@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/scene/scene_pictures.h"
 
-#include "importers/png.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -40,15 +38,14 @@ public:
 /// A picture of one row, a red and a green texel.
 class RedAndGreen {
 public:
-    RedAndGreen() : path(fs::temp_directory_path() / fmt_name()) {
-        const uint16_t samples[] = {65535, 0, 0, 0, 65535, 0};
-        std::ofstream(path, std::ios::binary) << *write_png({2, 1, 8, samples}, "test");
+    RedAndGreen()
+        : path(fs::temp_directory_path() /
+               ("overcast-pictures-" + std::to_string(getpid()) + ".ppm")) {
+        const char bytes[] = {'\xff', 0, 0, 0, '\xff', 0};
+        std::ofstream(path, std::ios::binary) << "P6\n2 1\n255\n" << std::string(bytes, 6);
     }
     ~RedAndGreen() { fs::remove(path); }
     RedAndGreen(const RedAndGreen&) = delete;
-    static std::string fmt_name() {
-        return "overcast-pictures-" + std::to_string(getpid()) + ".png";
-    }
 
     const fs::path path;
 };
@@ -111,7 +108,7 @@ TEST(ScenePictures, WarnOfOneThatBreaksOffWhereItIsLookedAt) {
     if (!has_library())
         GTEST_SKIP() << "libovercast-textures.so is not built";
     const RedAndGreen picture;
-    fs::resize_file(picture.path, fs::file_size(picture.path) - 25);
+    fs::resize_file(picture.path, fs::file_size(picture.path) - 4);
     Notes notes;
     ScenePictures pictures({}, notes.log());
     Scene scene = scene_with({picture.path.string()});
