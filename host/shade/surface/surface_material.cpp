@@ -11,15 +11,19 @@ static constexpr float kMinCoat = 1 / 4096.0f;
 static void take_color(const Scene& scene, const Material& material, const dvec3& at,
                        SurfacePoint& surface) {
     surface.material = &material;
+    const dvec3 smooth = surface.normal;
     if (material.bump)
-        surface.normal = bumped(scene.textures, *material.bump, at, surface.normal);
+        surface.normal =
+            bumped(scene.textures, scene.bumps, *material.bump, at, smooth, surface.view);
     surface.color = material.color;
     if (material.texture) {
+        const PlacedTexture& placed = *material.texture;
         const TransparentColor color =
-            color_at(scene.textures, material.texture->texture, material.texture->at(at));
+            color_at(scene.textures, placed.texture, {placed.at(at), smooth, surface.view});
         surface.color = color.rgb;
         if (material.finish) {
-            surface.opacity = glm::clamp(color.opacity(), 0.0f, 1.0f);
+            surface.opacity =
+                glm::clamp(opacity(color, material.finish->filter_by_brightest), 0.0f, 1.0f);
             surface.through = material.transmission * color.through();
         }
     } else if (material.finish)
@@ -50,7 +54,8 @@ static vec3 add_coats(const Scene& scene, uint32_t number, const dvec3& at, cons
 static vec3 add_mix(const Scene& scene, const PlacedTexture& placed, const dvec3& at,
                     const vec3& weight, const SurfacePoint& bare, std::vector<Coat>& coats) {
     const Texture& mix = scene.textures[placed.texture];
-    const PatternPlace place = evaluate(mix.pattern, placed.at(at));
+    const PatternPlace place =
+        evaluate(scene.textures, mix.pattern, {placed.at(at), bare.normal, bare.view});
     const Between where = between(
         mix.stops.size(), [&](size_t i) { return mix.stops[i].at; }, place.value,
         is_discrete(mix.pattern.kind));
