@@ -42,8 +42,23 @@ struct Finish {
     bool fresnel = false;
     float metallic_reflection = 0; // mirror images take the color on, as highlights do
     bool conserve_energy = false;  // reflected light is not let through, too
+    float crand = 0; // up to this share of diffuse light is missing, at random from place to place
+    /// A filter hides the surface's own light in proportion to its brightest component, as before
+    /// POV-Ray 3.7, and not by its amount.
+    bool filter_by_brightest = false;
 
     bool operator==(const Finish&) const = default;
+};
+
+/// Light that went a distance through the inside of a solid keeps a share of 1 / (1 + (way /
+/// distance) ^ power), or of exp(-way / distance) for a power of 1,000 or more. The rest of a
+/// component of light keeps the share of `color`.
+struct Absorption {
+    float distance = 0; // above 0
+    float power = 0;
+    vec3 color{0};
+
+    bool operator==(const Absorption&) const = default;
 };
 
 /// How a surface treats light physically, where its file says so. Path tracing goes by this, and
@@ -112,6 +127,9 @@ struct Material {
     /// Mixes materials in proportion, as a texture does colors: its stops' `texture` are indices
     /// into Scene::materials. This material then only says what the rest of the scene asks of it.
     std::optional<PlacedTexture> mix;
+    std::optional<Absorption> absorption; // of light that comes to the surface from inside
+    /// The material of the surface's inner side, an index into Scene::materials; kNone: this one.
+    uint32_t inside = kNone;
 
     bool operator==(const Material&) const = default;
 };
@@ -147,6 +165,9 @@ struct MeshInfo {
     /// 3 per triangle for a mesh that has a use for them, or those of another mesh; else empty.
     std::vector<vec2> uv;
     uint32_t uv_from = kNone;
+    /// The triangles stand for a curved surface through their corners that has their normals.
+    /// Textures are evaluated on it.
+    bool curved = false;
     /// Where normals and texture coordinates lie on a disk instead (Scene::on_disk); or null.
     const StoredValues* stored_normals = nullptr;
     const StoredValues* stored_uv = nullptr;
@@ -223,11 +244,28 @@ struct Camera {
     /// If set, it decides the view instead of target, up and fov_degrees. Those then hold about the
     /// same view: the background takes its "up" from them, and a light over the shoulder its place.
     std::optional<ImageWindow> window;
+    /// Tilts the rays' directions. Its space is that of the picture, from -0.5 to 0.5 from left to
+    /// right and from bottom to top. Its textures are those of the scene.
+    std::optional<Bump> bump;
 };
 
 struct ImageSize {
     uint32_t width = 512;
     uint32_t height = 512;
+};
+
+/// Mist in the air. Of light that goes a way through it, the share exp(-way / distance) is left,
+/// and the fog's own color takes the place of the rest.
+struct Fog {
+    TransparentColor color; // at least the share `transmit` is left; `filter` of that is tinted
+    double distance = 1;    // above 0
+    /// Unless 0, the fog is a layer on the ground: it is full below `offset` along `up`, and above
+    /// that it is thinner by 1 / (1 + (height / altitude)^2).
+    double altitude = 0;
+    double offset = 0;
+    dvec3 up{0, 1, 0}; // unit length
+
+    bool operator==(const Fog&) const = default;
 };
 
 /// The light that a ray sees where it hits nothing: a gradient from horizon to zenith along the
@@ -237,6 +275,8 @@ struct Background {
     vec3 horizon{0.8f};
     vec3 zenith{0.35f, 0.5f, 0.8f};
     std::vector<PlacedTexture> layers;
+    bool tints = true; // what a layer's filter lets through takes on its color
+    std::vector<Fog> fogs;
 
     bool operator==(const Background&) const = default;
 };
@@ -282,6 +322,7 @@ struct Scene {
     std::vector<Material> materials;
     std::vector<Texture> textures; // a texture's stops name textures before it
     std::vector<PictureFile> pictures;
+    std::vector<Bump> bumps;       // parts of those of materials, each made of ones before it
     std::vector<Cutout> cutouts;
     std::vector<Light> lights;
     bool moves = false;                // something in it goes by the Moment

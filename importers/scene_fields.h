@@ -18,14 +18,30 @@ void each_field(auto& io, Some<PlacedTexture> auto& p) {
     io(p.texture, p.to_texture);
 }
 
+void each_field(auto& io, Some<SlopeStop> auto& s) {
+    io(s.at, s.height, s.slope);
+}
+
 void each_field(auto& io, Some<Bump> auto& b) {
-    io(b.kind, b.amount, b.accuracy, b.pattern);
+    io(b.kind, b.amount, b.accuracy, b.pattern, b.profile, b.parts);
+}
+
+void each_field(auto& io, Some<FormulaStep> auto& s) {
+    io(s.kind, s.index, s.count, s.value);
+}
+
+void each_field(auto& io, Some<Formula> auto& f) {
+    io(f.steps, f.ends);
+}
+
+void each_field(auto& io, Some<DensityGrid> auto& g) {
+    io(g.size, g.values);
 }
 
 void each_field(auto& io, Some<Finish> auto& f) {
     io(f.ambient, f.diffuse, f.brilliance, f.phong, f.phong_size, f.specular, f.roughness,
        f.metallic, f.reflection, f.grazing_reflection, f.reflection_falloff, f.fresnel,
-       f.metallic_reflection, f.conserve_energy);
+       f.metallic_reflection, f.conserve_energy, f.crand, f.filter_by_brightest);
 }
 
 void each_field(auto& io, Some<TransparentColor> auto& c) {
@@ -42,7 +58,7 @@ void each_field(auto& io, Some<Octaves> auto& o) {
 
 void each_field(auto& io, Some<Pattern> auto& p) {
     io(p.kind, p.parameters, p.wave, p.frequency, p.phase, p.exponent, p.noise, p.turbulence,
-       p.octaves, p.steps);
+       p.octaves, p.steps, p.formula, p.grid);
 }
 
 void each_field(auto& io, Some<TextureStop> auto& s) {
@@ -75,9 +91,13 @@ void each_field(auto& io, Some<Optics> auto& o) {
     io(o.diffuse, o.boundary, o.reflection, o.through, o.ior, o.width, o.emission, o.two_sided);
 }
 
+void each_field(auto& io, Some<Absorption> auto& a) {
+    io(a.distance, a.power, a.color);
+}
+
 void each_field(auto& io, Some<Material> auto& m) {
     io(m.name, m.color, m.mirror, m.transmission, m.filter, m.ior, m.finish, m.optics, m.texture,
-       m.bump, m.normal_map, m.maps, m.under, m.mix);
+       m.bump, m.normal_map, m.maps, m.under, m.absorption, m.inside, m.mix);
 }
 
 void each_field(auto& io, Some<Cutout> auto& c) {
@@ -99,15 +119,19 @@ void each_field(auto& io, Some<ImageWindow> auto& w) {
 }
 
 void each_field(auto& io, Some<Camera> auto& c) {
-    io(c.eye, c.target, c.up, c.fov_degrees, c.window);
+    io(c.eye, c.target, c.up, c.fov_degrees, c.window, c.bump);
 }
 
 void each_field(auto& io, Some<ImageSize> auto& s) {
     io(s.width, s.height);
 }
 
+void each_field(auto& io, Some<Fog> auto& f) {
+    io(f.color, f.distance, f.altitude, f.offset, f.up);
+}
+
 void each_field(auto& io, Some<Background> auto& b) {
-    io(b.horizon, b.zenith, b.layers);
+    io(b.horizon, b.zenith, b.layers, b.tints, b.fogs);
 }
 
 void each_field(auto& io, Some<Omission> auto& o) {
@@ -121,13 +145,14 @@ void each_field(auto& io, Some<Instancing> auto& i) {
 /// Passes all fields except the normals and texture coordinates, which are parts of their own in
 /// the file.
 void each_field(auto& io, Some<MeshInfo> auto& m) {
-    io(m.name, m.material, m.normals_from, m.turn, m.cutout, m.shadow_cutout, m.uv_from,
+    io(m.name, m.material, m.curved, m.normals_from, m.turn, m.cutout, m.shadow_cutout, m.uv_from,
        m.normals_left_out, m.texture_coordinates_left_out);
 }
 
 /// Passes all fields except meshes, soup, and what the file's other parts hold.
 void each_field(auto& io, Some<Scene> auto& s) {
-    io(s.name, s.materials, s.textures, s.pictures, s.cutouts, s.lights, s.may_add_light, s.camera,
+    io(s.name, s.materials, s.textures, s.pictures, s.bumps, s.cutouts, s.lights, s.may_add_light,
+       s.camera,
        s.size, s.max_depth, s.background, s.exposure, s.gamma, s.omissions, s.instancing);
 }
 

@@ -3,23 +3,36 @@
 #pragma once
 
 #include "core/scene.h"
+#include "core/texture/fractal.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace ovc {
 
+/// One color takes at most so many steps, and textures lie in each other at most so deep.
+inline constexpr double kMaxTextureSteps = 1e6;
+inline constexpr uint32_t kMaxTextureDepth = 500;
+
 inline bool is_sound(const Pattern& pattern) {
     const auto finite = [](double x) { return std::isfinite(x); };
     const bool steps =
         std::all_of(pattern.steps.begin(), pattern.steps.end(), [](const TextureStep& step) {
-            return step.kind <= TextureStep::Kind::Repeat &&
+            return step.kind <= TextureStep::Kind::BlackHole &&
                    (step.kind != TextureStep::Kind::Turbulence ||
-                    (step.rows[1].y >= 0 && step.rows[1].y <= kMaxOctaves));
+                    (step.rows[1].y >= 0 && step.rows[1].y <= double(kMaxOctaves)));
         });
-    return steps && pattern.kind <= Pattern::Kind::Hexagon &&
-           pattern.wave <= Pattern::Wave::Power && pattern.noise >= NoiseKind::Original &&
-           pattern.noise <= NoiseKind::Corrected && pattern.octaves.count <= kMaxOctaves &&
+    const DensityGrid& grid = pattern.grid;
+    const uint64_t cells = uint64_t(grid.size[0]) * grid.size[1] * grid.size[2];
+    const bool small = std::all_of(grid.size.begin(), grid.size.end(),
+                                   [](uint32_t side) { return side <= UINT16_MAX; });
+    const bool fractal = pattern.kind != Pattern::Kind::Fractal ||
+                         std::all_of(pattern.parameters.begin(), pattern.parameters.end(),
+                                     [](double x) { return std::abs(x) <= kMaxFractalIterations; });
+    return steps && small && cells == grid.values.size() && fractal &&
+           pattern.kind <= Pattern::Kind::Triangular && pattern.wave <= Pattern::Wave::Power &&
+           pattern.noise >= NoiseKind::Original && pattern.noise <= NoiseKind::Corrected &&
+           pattern.octaves.count <= kMaxOctaves &&
            std::all_of(pattern.parameters.begin(), pattern.parameters.end(), finite) &&
            finite(pattern.frequency) && finite(pattern.phase) && finite(pattern.exponent);
 }
@@ -42,38 +55,82 @@ inline bool is_sound(const Texture& texture, size_t pictures) {
     return texture.stops.size() >= (texture.kind == TextureKind::Mix ? 3u : 1u);
 }
 
-/// The most patterns that one color may take, and materials that one surface may be made of.
-inline constexpr double kMaxTextureSteps = 1e5;
+/// What the textures of a scene need at most, or nothing where one of them is not sound.
+struct TextureNeeds {
+    std::vector<double> work;
+    std::vector<uint32_t> depth;
+    bool sound = false;
+};
 
-/// Returns whether textures are made of earlier ones, whose stops are materials where `mixes` says
-/// so, and one color takes at most kMaxTextureSteps patterns.
-inline bool are_sound_trees(const Scene& scene, const std::vector<bool>& mixes) {
-    std::vector<double> work(scene.textures.size(), 1);
+/// mixes: whether a texture's stops name materials instead of textures.
+inline TextureNeeds needs_of_textures(const Scene& scene, const std::vector<bool>& mixes) {
+    TextureNeeds needs{std::vector<double>(scene.textures.size(), 1),
+                       std::vector<uint32_t>(scene.textures.size(), 1)};
     for (size_t t = 0; t < scene.textures.size(); ++t) {
         const Texture& texture = scene.textures[t];
         if (!is_sound(texture, scene.pictures.size()))
-            return false;
-        for (const TextureStop& stop : texture.stops) {
-            if (mixes[t] || stop.texture == kNoTexture)
-                continue;
-            if (stop.texture >= t || mixes[stop.texture])
+            return needs;
+        const auto take = [&](uint32_t other) {
+            if (other >= t || mixes[other])
                 return false;
-            work[t] += work[stop.texture];
+            needs.work[t] += needs.work[other];
+            needs.depth[t] = std::max(needs.depth[t], needs.depth[other] + 1);
+            return true;
+        };
+        for (const TextureStop& stop : texture.stops)
+            if (!mixes[t] && stop.texture != kNoTexture && !take(stop.texture))
+                return needs;
+        const Formula& formula = texture.pattern.formula;
+        if (texture.pattern.kind == Pattern::Kind::Function) {
+            needs.work[t] += formula_work(formula, t);
+            for (const FormulaStep& step : formula.steps)
+                if (step.kind >= FormulaStep::Kind::Value && !take(step.index))
+                    return needs;
         }
-        if (!(work[t] <= kMaxTextureSteps))
+        if (!(needs.work[t] <= kMaxTextureSteps) || needs.depth[t] > kMaxTextureDepth)
+            return needs;
+    }
+    needs.sound = true;
+    return needs;
+}
+
+/// Returns whether the bump can be evaluated, whose parts are among the first `bumps` of the scene.
+inline bool is_sound(const Bump& bump, const Scene& scene, size_t bumps) {
+    return bump.kind <= Bump::Kind::Mix && bump.accuracy > 0 &&
+           bump.pattern.texture < scene.textures.size() &&
+           (bump.kind != Bump::Kind::Mix ||
+            (!bump.parts.empty() &&
+             bump.parts.size() == scene.textures[bump.pattern.texture].stops.size())) &&
+           std::all_of(bump.parts.begin(), bump.parts.end(),
+                       [&](uint32_t part) { return part < bumps; });
+}
+
+/// Returns whether the scene's bumps are made of earlier ones, and not too many of them.
+inline bool has_sound_bumps(const Scene& scene) {
+    std::vector<double> work(scene.bumps.size(), 1);
+    std::vector<uint32_t> depth(scene.bumps.size(), 1);
+    for (size_t b = 0; b < scene.bumps.size(); ++b) {
+        if (!is_sound(scene.bumps[b], scene, b))
+            return false;
+        for (const uint32_t part : scene.bumps[b].parts) {
+            work[b] += work[part];
+            depth[b] = std::max(depth[b], depth[part] + 1);
+        }
+        if (!(work[b] <= kMaxTextureSteps) || depth[b] > kMaxTextureDepth)
             return false;
     }
-    return true;
+    if (scene.camera && scene.camera->bump &&
+        !is_sound(*scene.camera->bump, scene, scene.bumps.size()))
+        return false;
+    return std::all_of(scene.materials.begin(), scene.materials.end(), [&](const Material& m) {
+        return !m.bump || is_sound(*m.bump, scene, scene.bumps.size());
+    });
 }
 
 /// Returns whether the material's textures exist and are colors, as is_color(number) says.
 template <class IsColor>
 bool has_sound_textures(const Scene& scene, const Material& material, const IsColor& is_color) {
     if (material.texture && !is_color(material.texture->texture))
-        return false;
-    if (material.bump &&
-        (material.bump->kind > Bump::Kind::Wrinkles || !(material.bump->accuracy > 0) ||
-         material.bump->pattern.texture >= scene.textures.size()))
         return false;
     if (material.normal_map && (material.normal_map->kind > NormalMap::Kind::Tangent ||
                                 !is_color(material.normal_map->texture)))
@@ -88,13 +145,13 @@ bool has_sound_textures(const Scene& scene, const Material& material, const IsCo
 }
 
 /// Returns whether patterns can be evaluated, textures are made of earlier ones and materials of
-/// earlier ones, and one color takes at most kMaxTextureSteps patterns.
+/// earlier ones, and one color takes at most kMaxTextureSteps steps.
 inline bool has_sound_textures(const Scene& scene) {
     std::vector<bool> mixes(scene.textures.size());
     for (const Material& material : scene.materials)
         if (material.mix && material.mix->texture < mixes.size())
             mixes[material.mix->texture] = true;
-    if (!are_sound_trees(scene, mixes))
+    if (!needs_of_textures(scene, mixes).sound || !has_sound_bumps(scene))
         return false;
     const auto is_color = [&](uint32_t texture) {
         return texture < mixes.size() && !mixes[texture];
@@ -111,6 +168,8 @@ inline bool has_sound_textures(const Scene& scene) {
                 return false;
             layers[m] += layers[part];
         }
+        if (material.inside != kNone && material.inside >= m)
+            return false;
         if (material.under != kNone) {
             if (material.under >= m)
                 return false;

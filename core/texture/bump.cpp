@@ -4,23 +4,60 @@
 #include "core/texture/bump.h"
 
 #include "core/texture/pattern.h"
+#include "core/texture/random_cells.h"
 
 #include <cmath>
+#include <numbers>
 
 namespace ovc {
 
 namespace {
 
-/// Returns -0.1 times four thirds of the pattern's gradient, about. The corners of a tetrahedron of
+/// Returns the height that a slope map gives a value: a cubic through the two stops around it that
+/// has their slopes.
+double height_of(const std::vector<SlopeStop>& profile, double value) {
+    if (profile.empty())
+        return value;
+    const Between where = between(
+        profile.size(), [&](size_t i) { return profile[i].at; }, value, false);
+    const SlopeStop &a = profile[where.first], &b = profile[where.second];
+    if (where.first == where.second)
+        return a.height;
+    const double t = where.share, s = 1 - t; // slopes are those over t
+    return s * s * (1 + 2 * t) * a.height + t * t * (1 + 2 * s) * b.height +
+           s * t * (s * a.slope - t * b.slope);
+}
+
+/// What a bump depends on besides itself.
+struct Around {
+    std::span<const Texture> textures;
+    std::span<const Bump> bumps;
+    dvec3 at, normal, view; // in the world
+};
+
+const Pattern& pattern_of(const Around& around, const Bump& bump) {
+    return around.textures[bump.pattern.texture].pattern;
+}
+
+TexturePoint point_of(const Around& around, const Bump& bump) {
+    return {bump.pattern.at(around.at), around.normal, around.view};
+}
+
+/// Returns -0.1 times four thirds of the height's gradient, about. The corners of a tetrahedron of
 /// size `accuracy` are where the pattern is looked at.
-dvec3 against_slope(std::span<const Texture> textures, const Bump& bump, const dvec3& at) {
+dvec3 against_slope(const Around& around, const Bump& bump) {
     static const dvec3 kCorners[] = {{2 * std::sqrt(2.0) / 3, -1 / 3.0, 0},
                                      {-std::sqrt(2.0) / 3, -1 / 3.0, std::sqrt(2 / 3.0)},
                                      {-std::sqrt(2.0) / 3, -1 / 3.0, -std::sqrt(2 / 3.0)},
                                      {0, 1, 0}};
+    const TexturePoint point = point_of(around, bump);
     dvec3 sum(0);
-    for (const dvec3& corner : kCorners)
-        sum -= value_at(textures, bump.pattern.texture, {at + bump.accuracy * corner}) * corner;
+    for (const dvec3& corner : kCorners) {
+        TexturePoint near = point;
+        near.at += bump.accuracy * corner;
+        const double value = value_at(around.textures, bump.pattern.texture, near);
+        sum -= height_of(bump.profile, value) * corner;
+    }
     return 0.1 / bump.accuracy * sum;
 }
 
@@ -32,37 +69,93 @@ dvec3 wrinkled(const dvec3& at) {
     return sum;
 }
 
-dvec3 tilt(std::span<const Texture> textures, const Bump& bump, const dvec3& at) {
+/// Returns the mean of the slopes of the waves from all sources. kind: Ripples or Waves.
+dvec3 waved(const Pattern& pattern, Bump::Kind kind, const dvec3& at) {
+    dvec3 sum(0);
+    for (const WaveSource& source : wave_sources()) {
+        const double frequency = kind == Bump::Kind::Waves ? source.frequency : 1;
+        const dvec3 way = at - source.at;
+        const double away = glm::length(way);
+        if (!(away > 0))
+            continue;
+        const double turn = away * pattern.frequency * frequency + pattern.phase;
+        sum += std::sin(2 * std::numbers::pi * turn) / (frequency * away) * way;
+    }
+    return sum / double(kWaveSources);
+}
+
+dvec3 quilted_slope(const Pattern& pattern, const dvec3& at) {
+    const dvec3 off = at - glm::floor(at) - 0.5;
+    return quilted_curve(pattern, glm::length(off)) / std::sqrt(0.75) * off;
+}
+
+dvec3 tilt(const Around& around, const Bump& bump) {
     if (bump.kind == Bump::Kind::Height)
-        return against_slope(textures, bump, at);
-    const Pattern& pattern = textures[bump.pattern.texture].pattern;
-    const dvec3 where = evaluate(pattern, at).at;
+        return against_slope(around, bump);
+    const Pattern& pattern = pattern_of(around, bump);
+    const dvec3 where = evaluate(around.textures, pattern, point_of(around, bump)).at.at;
     switch (bump.kind) {
     case Bump::Kind::Dents:
         return std::pow(noise(where, pattern.noise), 3) * vector_noise(where);
     case Bump::Kind::Wrinkles:
         return wrinkled(where);
+    case Bump::Kind::Ripples:
+    case Bump::Kind::Waves:
+        return waved(pattern, bump.kind, where);
+    case Bump::Kind::Quilted:
+        return quilted_slope(pattern, where);
     default:
         return vector_noise(where);
     }
 }
 
-} // namespace
+dvec3 tilted_normal(const Around& around, const Bump& bump);
 
-dvec3 bumped(std::span<const Texture> textures, const Bump& bump, const dvec3& at,
-             const dvec3& normal) {
+/// Returns the weighted sum of the normals of the parts at the pattern's value, or around.normal
+/// where they cancel out.
+dvec3 mixed(const Around& around, const Bump& bump) {
+    const std::vector<TextureStop>& stops = around.textures[bump.pattern.texture].stops;
+    const Pattern& pattern = pattern_of(around, bump);
+    const auto part = [&](size_t i) { return tilted_normal(around, around.bumps[bump.parts[i]]); };
+    dvec3 sum(0);
+    if (pattern.kind == Pattern::Kind::Average) {
+        for (size_t i = 0; i < stops.size(); ++i)
+            sum += stops[i].at * part(i);
+    } else {
+        const double value = evaluate(around.textures, pattern, point_of(around, bump)).value;
+        const Between where = between(
+            stops.size(), [&](size_t i) { return stops[i].at; }, value, is_discrete(pattern.kind));
+        sum = (1 - where.share) * part(where.first);
+        if (where.share > 0)
+            sum += where.share * part(where.second);
+    }
+    const double length = glm::length(sum);
+    return length > 1e-9 ? sum / length : around.normal;
+}
+
+dvec3 tilted_normal(const Around& around, const Bump& bump) {
+    if (bump.kind == Bump::Kind::Mix)
+        return mixed(around, bump);
+    if (bump.amount == 0)
+        return around.normal;
     const PlacedTexture& placed = bump.pattern;
     // Rows of the map from the world: normals go to the pattern by the inverse of its transpose.
     const dmat3 rows(dvec3(placed.to_texture[0]), dvec3(placed.to_texture[1]),
                      dvec3(placed.to_texture[2]));
-    const dvec3 there = glm::inverse(rows) * normal;
+    const dvec3 there = glm::inverse(rows) * around.normal;
     const double length = glm::length(there);
     if (!(length > 0) || !std::isfinite(length))
-        return normal;
-    const dvec3 tilted = there / length + bump.amount * tilt(textures, bump, placed.at(at));
-    const dvec3 back = rows * tilted;
+        return around.normal;
+    const dvec3 back = rows * (there / length + bump.amount * tilt(around, bump));
     const double size = glm::length(back);
-    return size > 0 && std::isfinite(size) ? back / size : normal;
+    return size > 0 && std::isfinite(size) ? back / size : around.normal;
+}
+
+} // namespace
+
+dvec3 bumped(std::span<const Texture> textures, std::span<const Bump> bumps, const Bump& bump,
+             const dvec3& at, const dvec3& normal, const dvec3& view) {
+    return tilted_normal({textures, bumps, at, normal, view}, bump);
 }
 
 } // namespace ovc

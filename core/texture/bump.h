@@ -8,22 +8,46 @@
 
 namespace ovc {
 
+/// The height of a surface and its slope at a value of a pattern, as in POV-Ray's `slope_map`.
+struct SlopeStop {
+    double at = 0;
+    double height = 0;
+    double slope = 0;
+
+    bool operator==(const SlopeStop&) const = default;
+};
+
 struct Bump {
-    /// Height tilts against the slope of the pattern's value. The others add noise to the normal:
-    /// three noises, those times the cube of the noise, or the sum of their magnitudes in octaves.
-    enum class Kind : uint64_t { Height, Noise, Dents, Wrinkles };
+    /// Height tilts against the slope of the pattern's value. The next three add noise to the
+    /// normal: three noises, those times the cube of the noise, or the sum of their magnitudes in
+    /// octaves. Ripples and Waves tilt it along the waves that run over the surface. Quilted tilts
+    /// it away from the middle of a cell, and Facets snaps it to that of a cell's point. Mix adds
+    /// up the normals of `parts`, one for each stop of the texture, in proportion.
+    enum class Kind : uint64_t {
+        Height,
+        Noise,
+        Dents,
+        Wrinkles,
+        Ripples,
+        Waves,
+        Quilted,
+        Facets,
+        Mix
+    };
 
     Kind kind = Kind::Height;
     double amount = 0.5;
     double accuracy = 0.02; // how far apart Height looks at the pattern, in its space; above 0
-    PlacedTexture pattern;  // only the pattern of the texture matters, not its colors
+    PlacedTexture pattern;  // only the pattern of the texture and the values of its stops matter
+    std::vector<SlopeStop> profile; // of Height: turns values into heights; none: they are heights
+    std::vector<uint32_t> parts;    // of Mix: indices into Scene::bumps, below that of this one
 
     bool operator==(const Bump&) const = default;
 };
 
-/// Returns the tilted normal at a point of the world, of length 1. normal: of length 1, on the side
-/// that is seen.
-dvec3 bumped(std::span<const Texture> textures, const Bump& bump, const dvec3& at,
-             const dvec3& normal);
+/// Returns the tilted normal at a point of the world, of length 1. bumps: those of the scene.
+/// normal: of length 1, on the side that is seen. view: along the ray that sees it.
+dvec3 bumped(std::span<const Texture> textures, std::span<const Bump> bumps, const Bump& bump,
+             const dvec3& at, const dvec3& normal, const dvec3& view);
 
 } // namespace ovc

@@ -48,12 +48,28 @@ const AskedNormal kAskedNormals[] = {
      {.kind = Kind::Leopard},
      {.amount = 0.8, .accuracy = 0.1},
      {{-0.00872, -0.00852, -0.99992}, {-0.03058, -0.03109, -0.99905}}},
+    {"ripples 0.4 frequency 2 phase 0.3",
+     {.kind = Kind::Ripples, .frequency = 2, .phase = 0.3},
+     {.kind = Bump::Kind::Ripples, .amount = 0.4},
+     {{0.03168, -0.01119, -0.99944}, {-0.06864, 0.05175, -0.99630}}},
+    {"waves 0.4 frequency 2 phase 0.3",
+     {.kind = Kind::Waves, .frequency = 2, .phase = 0.3},
+     {.kind = Bump::Kind::Waves, .amount = 0.4},
+     {{0.10696, 0.05771, -0.99259}, {0.06771, 0.13985, -0.98786}}},
+    {"quilted 0.5 control0 0.3 control1 0.8",
+     {.kind = Kind::Quilted, .parameters = {0.3, 0.8}},
+     {.kind = Bump::Kind::Quilted, .amount = 0.5},
+     {{-0.03918, 0.03918, -0.99846}, {0.03918, 0.03918, -0.99846}}},
+    {"onion slope_map { [0 <0, 1>] [0.5 <1, 0>] [1 <0, -1>] }",
+     {.kind = Kind::Onion},
+     {.profile = {{0, 0, 1}, {0.5, 1, 0}, {1, 0, -1}}},
+     {{0.10140, -0.10114, -0.98969}, {-0.10127, -0.10110, -0.98971}}},
 };
 
 void expect_normal(const Pattern& pattern, const Bump& bump, const dvec3& at, const dvec3& expected,
                    const char* name) {
     const std::vector<Texture> textures{{pattern, {{}}}};
-    const dvec3 normal = bumped(textures, bump, at, {0, 0, -1});
+    const dvec3 normal = bumped(textures, {}, bump, at, {0, 0, -1}, {0, 0, 1});
     EXPECT_LT(glm::length(normal - expected), 1e-4)
         << name << ": " << normal.x << " " << normal.y << " " << normal.z;
 }
@@ -69,6 +85,41 @@ TEST(Bump, TiltsNormalsAsPovrayDoes) {
                                        dvec4(0, 0, scale, 0)};
             expect_normal(asked.pattern, bump, kPlaces[i], asked.expected[i], asked.name);
         }
+}
+
+TEST(Bump, MixesNormalsAsPovrayDoes) {
+    const struct {
+        const char* name;
+        Kind pattern;
+        double at[2]; // of the two stops: bumps 0.3 and leopard 0.8
+        dvec3 expected[2];
+    } kMixes[] = {{"planar",
+                   Kind::Planar,
+                   {0, 1},
+                   {{-0.04368, 0.01185, -0.99898}, {-0.01361, -0.01841, -0.99974}}},
+                  {"average",
+                   Kind::Average,
+                   {1, 3},
+                   {{-0.02107, -0.00163, -0.99978}, {-0.02501, -0.02676, -0.99933}}},
+                  {"checker",
+                   Kind::Checker,
+                   {0, 1},
+                   {{-0.00890, -0.00887, -0.99992}, {-0.00658, -0.01326, -0.99989}}}};
+    const double scale = 1 / 0.7;
+    const std::array<dvec4, 3> rows{dvec4(scale, 0, 0, 0), dvec4(0, scale, 0, 0),
+                                    dvec4(0, 0, scale, 0)};
+    const std::vector<Bump> bumps{{.kind = Bump::Kind::Noise, .amount = 0.3, .pattern = {0, rows}},
+                                  {.amount = 0.8, .pattern = {1, rows}}};
+    for (const auto& mix : kMixes) {
+        const std::vector<Texture> textures{{{.kind = Kind::Bozo}, {{}}},
+                                            {{.kind = Kind::Leopard}, {{}}},
+                                            {{.kind = mix.pattern}, {{mix.at[0]}, {mix.at[1]}}}};
+        const Bump whole{.kind = Bump::Kind::Mix, .pattern = {2, rows}, .parts = {0, 1}};
+        for (int i = 0; i < 2; ++i) {
+            const dvec3 normal = bumped(textures, bumps, whole, kPlaces[i], {0, 0, -1}, {0, 0, 1});
+            EXPECT_LT(glm::length(normal - mix.expected[i]), 1e-4) << mix.name << " " << i;
+        }
+    }
 }
 
 TEST(Bump, IsStretchedWithItsPattern) {

@@ -30,8 +30,13 @@ constexpr std::array<uint16_t, kPeriod> shuffled() {
 
 constexpr std::array<uint16_t, kPeriod> kShuffled = shuffled();
 
-uint32_t place_of(int64_t coordinate) {
-    return uint32_t(coordinate + kShift) % kPeriod;
+/// Returns the number of three coordinates within the period.
+uint32_t shuffled_number(uint32_t x, uint32_t y, uint32_t z) {
+    return kShuffled[kShuffled[kShuffled[x % kPeriod] ^ y % kPeriod] ^ z % kPeriod];
+}
+
+uint32_t lattice_number(int64_t x, int64_t y, int64_t z) {
+    return shuffled_number(uint32_t(x + kShift), uint32_t(y + kShift), uint32_t(z + kShift));
 }
 
 /// Returns 3 t^2 - 2 t^3.
@@ -78,8 +83,8 @@ constexpr double kCorrection = 1.05242, kRange = 2.041417;
 
 } // namespace
 
-uint32_t lattice_number(int64_t x, int64_t y, int64_t z) {
-    return kShuffled[kShuffled[kShuffled[place_of(x)] ^ place_of(y)] ^ place_of(z)];
+uint32_t cell_number(int64_t x, int64_t y, int64_t z) {
+    return shuffled_number(uint32_t(x), uint32_t(y), uint32_t(z));
 }
 
 double noise(const dvec3& at, NoiseKind kind) {

@@ -38,7 +38,7 @@ dvec3 turbulence(const dvec3& at, const Octaves& octaves);
 /// Returns the sum of octaves of noise that marble and agate add.
 double scalar_turbulence(const dvec3& at, const Octaves& octaves, NoiseKind kind);
 
-/// Returns the number of the lattice point, from 0 to 4,095, by which POV-Ray chooses at random.
-uint32_t lattice_number(int64_t x, int64_t y, int64_t z);
+/// Returns the number of the unit cell, from 0 to 4,095, by which POV-Ray chooses at random.
+uint32_t cell_number(int64_t x, int64_t y, int64_t z);
 
 } // namespace ovc

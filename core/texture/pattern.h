@@ -10,23 +10,29 @@ namespace ovc {
 
 /// A place where a pattern has been evaluated.
 struct PatternPlace {
-    double value; // of the pattern
-    dvec3 at;     // after its steps and its turbulence: textures of its stops go on from there
+    double value;    // of the pattern
+    TexturePoint at; // after its steps and its turbulence: textures of its stops go on from there
 };
 
 /// Returns the pattern's value at a point of the texture's space. It is a number for any point.
-PatternPlace evaluate(const Pattern& pattern, const dvec3& at);
+/// textures: those that the pattern's formula calls.
+PatternPlace evaluate(std::span<const Texture> textures, const Pattern& pattern,
+                      const TexturePoint& point);
 
 /// Returns the color of textures[number] at a point of its space.
 TransparentColor color_at(std::span<const Texture> textures, uint32_t number,
                           const TexturePoint& point);
-inline TransparentColor color_at(std::span<const Texture> textures, uint32_t number,
-                                 const dvec3& at) {
-    return color_at(textures, number, TexturePoint{at});
-}
 
 /// Returns what varies in textures[number] as a number: the pattern's value, or the mean color.
 double value_at(std::span<const Texture> textures, uint32_t number, const TexturePoint& point);
+
+/// Returns Bezier's cubic with the control values of a Quilted pattern, which its seams follow.
+double quilted_curve(const Pattern& pattern, double t);
+
+/// Returns how bright POV-Ray calls a color.
+inline float gray(const vec3& rgb) {
+    return 0.297f * rgb.x + 0.589f * rgb.y + 0.114f * rgb.z;
+}
 
 /// Two neighbouring stops, by their indices, and the share of the second.
 struct Between {

@@ -67,6 +67,46 @@ const AskedValues kAsked[] = {
     {"boxed poly_wave 3",
      Pattern{.kind = Kind::Boxed, .wave = Wave::Power, .exponent = 3},
      {0.027, 0, 0, 0.166375}},
+    {"cells", Pattern{.kind = Kind::Cells}, {0.711818915, 0.208934925, 0.383868604, 0.566954876}},
+    {"crackle",
+     Pattern{.kind = Kind::Crackle, .parameters = {-1, 1, 0, 2}},
+     {0.209405652, 0.344134626, 0.09863465, 0.460625479}},
+    {"crackle form <0.3, 0.2, 0.1> metric 3 offset 0.4",
+     Pattern{.kind = Kind::Crackle, .parameters = {0.3, 0.2, 0.1, 3, 0.4}},
+     {0.385476086, 0.385816893, 0.401567785, 0.379435195}},
+    {"crackle metric 1",
+     Pattern{.kind = Kind::Crackle, .parameters = {-1, 1, 0, 1}},
+     {0.34386109, 0.490280284, 0.282987425, 0.449250165}},
+    {"crackle solid",
+     Pattern{.kind = Kind::Crackle, .parameters = {-1, 1, 0, 2, 0, 1}},
+     {0.432515687, 0.611443569, 0.41834509, 0.4577364}},
+    {"ripples frequency 2 phase 0.3",
+     Pattern{.kind = Kind::Ripples, .frequency = 2, .phase = 0.3},
+     {0.967298012, 0.161547917, 0.0647673627, 0.467013258}},
+    {"waves frequency 2 phase 0.3",
+     Pattern{.kind = Kind::Waves, .frequency = 2, .phase = 0.3},
+     {0.254799301, 0.544463371, 0.41976307, 0.170685913}},
+    {"quilted control0 0.3 control1 0.8",
+     Pattern{.kind = Kind::Quilted, .parameters = {0.3, 0.8}},
+     {0.1388347, 0.0810770189, 0.102108311, 0.0682631358}},
+    {"spiral2 3",
+     Pattern{.kind = Kind::Spiral2, .parameters = {3}, .wave = Wave::Triangular},
+     {0.17328635, 0.543525318, 0.248367765, 0.791516043}},
+    {"mandel 30 exponent 3 interior 1, 2",
+     Pattern{.kind = Kind::Fractal, .parameters = {30, 3, 0, 0, 0, 1, 1, 1, 2}},
+     {0.394330624, 0, 0.133333333, 0.721161149}},
+    {"mandel 30 exterior 6, 0.1",
+     Pattern{.kind = Kind::Fractal, .parameters = {30, 2, 0, 0, 0, 6, 0.1, 0, 1}},
+     {0.217720876, 0.641879272, 0.350563586, 1}},
+    {"julia <0.353, 0.288>, 30",
+     Pattern{.kind = Kind::Fractal, .parameters = {30, 2, 1, 0.353, 0.288, 1, 1, 0, 1}},
+     {1, 0, 0.166666667, 1}},
+    {"magnet 1 mandel 30",
+     Pattern{.kind = Kind::Fractal, .parameters = {30, -1, 0, 0, 0, 1, 1, 0, 1}},
+     {1, 0.1, 1, 1}},
+    {"magnet 2 julia <0.3, 0.2>, 30 interior 6, 1",
+     Pattern{.kind = Kind::Fractal, .parameters = {30, -2, 1, 0.3, 0.2, 1, 1, 6, 1}},
+     {0.223675771, 0.223675771, 0.223675771, 0.223675771}},
     {"spiral1 3",
      Pattern{.kind = Kind::Spiral1, .parameters = {3}, .wave = Wave::Triangular},
      {0.436471446, 0.288712851, 0.605489599, 0.798066204}},
@@ -74,6 +114,8 @@ const AskedValues kAsked[] = {
     {"hexagon", Pattern{.kind = Kind::Hexagon}, {0, 2, 1, 0}},
     {"cubic", Pattern{.kind = Kind::Cubic}, {1, 1, 5, 2}},
     {"checker", Pattern{.kind = Kind::Checker}, {0, 0, 1, 1}},
+    {"square", Pattern{.kind = Kind::Square}, {0, 0, 0, 3}},
+    {"triangular", Pattern{.kind = Kind::Triangular}, {0, 3, 2, 1}},
 };
 
 } // namespace
@@ -82,7 +124,7 @@ TEST(Pattern, HasTheValuesThatPovrayPrints) {
     // POV-Ray wraps values at 1.00001, once more for marble than we do.
     for (const AskedValues& asked : kAsked)
         for (size_t i = 0; i < 4; ++i)
-            EXPECT_NEAR(evaluate(asked.pattern, kPoints[i]).value, asked.values[i], 3e-5)
+            EXPECT_NEAR(evaluate({}, asked.pattern, kPoints[i]).value, asked.values[i], 3e-5)
                 << asked.name << " at point " << i;
 }
 
@@ -90,23 +132,54 @@ TEST(Pattern, StepsComeBeforeTurbulence) {
     Pattern moved{.kind = Kind::Bozo, .turbulence = dvec3(0.4)};
     TextureStep half;
     half.rows = {dvec4(0.5, 0, 0, 0), dvec4(0, 0.5, 0, 0), dvec4(0, 0, 0.5, 1)};
-    const double expected = evaluate(moved, dvec3(1, 2, 4)).value;
+    const double expected = evaluate({}, moved, dvec3(1, 2, 4)).value;
     moved.steps = {half};
-    EXPECT_EQ(evaluate(moved, dvec3(2, 4, 6)).value, expected);
+    EXPECT_EQ(evaluate({}, moved, dvec3(2, 4, 6)).value, expected);
 }
 
 TEST(Pattern, IsANumberEverywhere) {
     const double far = std::numeric_limits<double>::max();
-    for (uint64_t kind = 0; kind <= uint64_t(Kind::Hexagon); ++kind) {
+    for (uint64_t kind = 0; kind <= uint64_t(Kind::Triangular); ++kind) {
         Pattern pattern{.kind = Kind(kind), .parameters = {1, 1, 1, 0.5}};
+        pattern.formula = {{{FormulaStep::Kind::Argument}}, {1}};
         for (const double turbulence : {0.0, 1.0})
             for (const double x : {0.0, far, -far, double(INFINITY), double(NAN)}) {
                 pattern.turbulence = dvec3(turbulence);
-                const double value = evaluate(pattern, {x, 1, x}).value;
+                const double value = evaluate({}, pattern, dvec3(x, 1, x)).value;
                 EXPECT_GE(value, 0) << kind;
                 EXPECT_LE(value, 6) << kind;
             }
     }
+}
+
+TEST(Pattern, LooksAtTheSurface) {
+    const dvec3 up(0, 1, 0), tilted = glm::normalize(dvec3(1, 1, 0));
+    Pattern slope{.kind = Kind::Slope, .parameters = {0, 1, 0, 0, 1}};
+    EXPECT_NEAR(evaluate({}, slope, {dvec3(0), up, up}).value, 1, 1e-12);
+    EXPECT_NEAR(evaluate({}, slope, {dvec3(0), tilted, up}).value, 0.75, 1e-12);
+    EXPECT_EQ(evaluate({}, slope, dvec3(0)).value, 0); // a sky has no normal
+    slope.parameters = {0, 1, 0, 0.5, 1};
+    EXPECT_NEAR(evaluate({}, slope, {dvec3(0), tilted, up}).value, 0.5, 1e-12);
+    const Pattern angle{.kind = Kind::AngleOfIncidence};
+    EXPECT_NEAR(evaluate({}, angle, {dvec3(0), up, -up}).value, 1, 1e-12);
+    EXPECT_NEAR(evaluate({}, angle, {dvec3(0), up, dvec3(1, 0, 0)}).value, 0.5, 1e-12);
+}
+
+TEST(Pattern, TakesTheValuesOfAGrid) {
+    Pattern pattern{.kind = Kind::Density};
+    pattern.grid = {{2, 1, 1}, {0.25f, 0.75f}};
+    EXPECT_EQ(evaluate({}, pattern, dvec3(0.4, 0.5, 0.5)).value, 0.25);
+    EXPECT_EQ(evaluate({}, pattern, dvec3(0.6, 0.5, 0.5)).value, 0.75);
+    EXPECT_EQ(evaluate({}, pattern, dvec3(1.5, 0.5, 0.5)).value, 0);
+    pattern.parameters[0] = 1;
+    EXPECT_NEAR(evaluate({}, pattern, dvec3(0.25, 0.5, 0.5)).value, 0.5, 1e-12);
+}
+
+TEST(Pattern, DrawsPointsTowardsABlackHole) {
+    Pattern pattern{.kind = Kind::Gradient, .parameters = {1, 0, 0}};
+    pattern.steps = {{TextureStep::Kind::BlackHole, {dvec4(0, 0, 0, 1), dvec4(1, 2, 0, 0)}}};
+    EXPECT_NEAR(evaluate({}, pattern, dvec3(0.5, 0, 0)).value, 0.625, 1e-12);
+    EXPECT_NEAR(evaluate({}, pattern, dvec3(0.5, 2, 0)).value, 0.5, 1e-12);
 }
 
 TEST(Texture, MixesTheStopsOfItsMap) {
@@ -114,14 +187,14 @@ TEST(Texture, MixesTheStopsOfItsMap) {
     const Texture map{along_x,
                       {{0.2, {{1, 0, 0}, 0.5f, 0.2f}}, {0.5, {{0, 1, 0}}}, {0.5, {{0, 0, 1}}}}};
     const std::vector<Texture> textures{map, {along_x, {{0, {}, 0}, {0, {vec3(8)}}}}};
-    EXPECT_EQ(color_at(textures, 0, {0.1, 0, 0}), map.stops[0].color);
-    EXPECT_EQ(color_at(textures, 0, {0.75, 0, 0}), map.stops[2].color);
-    const TransparentColor middle = color_at(textures, 0, {0.35, 0, 0});
+    EXPECT_EQ(color_at(textures, 0, dvec3(0.1, 0, 0)), map.stops[0].color);
+    EXPECT_EQ(color_at(textures, 0, dvec3(0.75, 0, 0)), map.stops[2].color);
+    const TransparentColor middle = color_at(textures, 0, dvec3(0.35, 0, 0));
     EXPECT_NEAR(middle.rgb.x, 0.5, 1e-6);
     EXPECT_NEAR(middle.rgb.y, 0.5, 1e-6);
     EXPECT_NEAR(middle.filter, 0.25, 1e-6);
     EXPECT_NEAR(middle.transmit, 0.1, 1e-6);
-    EXPECT_EQ(color_at(textures, 1, {0.75, 0, 0}).rgb, vec3(8)); // the last of equal stops
+    EXPECT_EQ(color_at(textures, 1, dvec3(0.75, 0, 0)).rgb, vec3(8)); // the last of equal stops
 }
 
 TEST(Texture, AveragesByWeight) {

@@ -3,6 +3,7 @@
 // docs/decisions/0033-textures-are-trees-in-the-scene.md says why it has this form.
 #pragma once
 
+#include "core/texture/formula.h"
 #include "core/texture/image_texture.h"
 #include "core/texture/noise.h"
 
@@ -15,6 +16,13 @@ namespace ovc {
 
 inline constexpr uint32_t kNoTexture = UINT32_MAX;
 
+/// Returns the share of its own light that a surface of this color shows. by_brightest: a filter
+/// hides it in proportion to its brightest component (Finish::filter_by_brightest).
+inline float opacity(const TransparentColor& color, bool by_brightest) {
+    return by_brightest ? 1 - color.filter * max_component(color.rgb) - color.transmit
+                        : color.opacity();
+}
+
 /// A step on the way of a point to where a pattern is evaluated.
 struct TextureStep {
     enum class Kind : uint64_t {
@@ -22,6 +30,7 @@ struct TextureStep {
         Turbulence, // rows[0]: the amount along x, y, z, then lambda; rows[1]: omega, octaves
         Repeat,     // rows[0]: the period along x, y or z, others 0; rows[1]: the offset of each
                     // period; rows[2]: 1 or -1 a component, by which every second one is flipped
+        BlackHole,  // rows[0]: center, radius; rows[1]: strength, falloff, 1 where it pushes
     };
     Kind kind = Kind::Affine;
     std::array<dvec4, 3> rows{dvec4(1, 0, 0, 0), dvec4(0, 1, 0, 0), dvec4(0, 0, 1, 0)};
@@ -29,24 +38,45 @@ struct TextureStep {
     bool operator==(const TextureStep&) const = default;
 };
 
+/// Values from 0 to 1 that fill the unit cube, as POV-Ray's density files do. The first index
+/// varies fastest.
+struct DensityGrid {
+    std::array<uint32_t, 3> size{}; // each above 0, or all 0 without a grid
+    std::vector<float> values;
+
+    bool operator==(const DensityGrid&) const = default;
+};
+
 /// A number that varies in space: POV-Ray's patterns, with their names. Those from Brick on have
 /// whole numbers as values, which choose a stop; those before have values from 0 to 1.
 struct Pattern {
     enum class Kind : uint64_t {
         Agate,
+        AngleOfIncidence,
         Boxed,
         Bozo,
+        Cells,
+        Crackle, // parameters: factors of the three nearest distances, metric, offset, 1 for solid
         Cylindrical,
         Dents,
+        Density,  // of the pattern's grid; parameters: its interpolation, 0 to 2
+        Fractal,  // parameters: see fractal.h
+        Function, // the pattern's formula
         Gradient, // parameters: a direction of length 1
         Granite,
         Leopard,
         Marble,
         Onion,
         Planar,
+        Quilted, // parameters: the control values
         Radial,
+        Ripples,
+        Slope, // parameters: direction (or a point), the slopes of the values 0 and 1, 1 for a
+               // point, a height's gradient and its value at the origin, which is added
         Spherical,
         Spiral1, // parameters: the number of arms
+        Spiral2, // likewise
+        Waves,
         Wood,
         Wrinkles,
         Average, // of all stops, weighted by their `at`
@@ -54,11 +84,13 @@ struct Pattern {
         Checker,
         Cubic,
         Hexagon,
+        Square,
+        Triangular,
     };
     enum class Wave : uint64_t { Ramp, Triangular, Sine, Scallop, Cubic, Power };
 
     Kind kind = Kind::Bozo;
-    std::array<double, 4> parameters{};
+    std::array<double, 10> parameters{};
     Wave wave = Wave::Ramp;
     double frequency = 1;
     double phase = 0;
@@ -69,6 +101,8 @@ struct Pattern {
     dvec3 turbulence{0};
     Octaves octaves;
     std::vector<TextureStep> steps; // in their order, before the turbulence
+    Formula formula;                // of Kind::Function: of x, y and z
+    DensityGrid grid;               // of Kind::Density
 
     bool operator==(const Pattern&) const = default;
 };
@@ -102,9 +136,15 @@ struct Texture {
     bool operator==(const Texture&) const = default;
 };
 
-/// The place of a surface where textures are evaluated.
+/// A point where textures are evaluated, and the surface that lies there, if any.
 struct TexturePoint {
-    dvec3 at; // in the texture's space
+    TexturePoint(const dvec3& place) : at(place) {}
+    TexturePoint(const dvec3& place, const dvec3& up, const dvec3& seen_along)
+        : at(place), normal(up), view(seen_along) {}
+
+    dvec3 at;        // in the texture's space
+    dvec3 normal{0}; // in the world, of length 1; 0: there is no surface
+    dvec3 view{0};   // of the ray that sees the point, of length 1; 0: none does
     /// The sides of the parallelogram around the point of which a texture is to take the mean.
     std::array<dvec3, 2> sides{};
     bool has_uv = false; // without, textures on uv have the color that they have without a picture

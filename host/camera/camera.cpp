@@ -56,7 +56,8 @@ Result<Done> check_camera(const Camera& camera) {
     return Done{};
 }
 
-Pinhole::Pinhole(const Camera& camera, const PicturePart& part) : part_(part), eye_(camera.eye) {
+Pinhole::Pinhole(const Camera& camera, const PicturePart& part, const Scene* scene)
+    : part_(part), scene_(scene), eye_(camera.eye) {
     assert(part.size.width > 0 && part.left + part.size.width <= part.picture.width);
     assert(part.size.height > 0 && part.top + part.size.height <= part.picture.height);
     assert(check_camera(camera));
@@ -68,6 +69,7 @@ Pinhole::Pinhole(const Camera& camera, const PicturePart& part) : part_(part), e
     const double unit = half_angle_tangent(camera.fov_degrees) / std::min(width, height);
     to_right_ = unit * width * right_;
     to_top_ = unit * height * up_;
+    bump_ = camera.bump;
     if (camera.window) {
         middle_ = camera.window->direction;
         to_right_ = 0.5 * camera.window->right;
@@ -81,6 +83,14 @@ Pinhole::Pinhole(const Camera& camera, const PicturePart& part) : part_(part), e
 Ray Pinhole::ray(uint32_t x, uint32_t y, const dvec2& place) const {
     const dvec2 at = (dvec2(part_.left + x, part_.top + y) + place) /
                      dvec2(part_.picture.width, part_.picture.height);
+    Ray ray = straight_ray(at);
+    if (bump_ && scene_ && ray.dir != dvec3(0))
+        ray.dir = bumped(scene_->textures, scene_->bumps, *bump_, {at.x - 0.5, 0.5 - at.y, 0},
+                         glm::normalize(ray.dir), ray.dir);
+    return ray;
+}
+
+Ray Pinhole::straight_ray(const dvec2& at) const {
     if (bent_)
         return bent_ray(*bent_, eye_, {at.x - 0.5, 0.5 - at.y});
     const dvec3 in_plane = (2 * at.x - 1) * to_right_ + (1 - 2 * at.y) * to_top_;

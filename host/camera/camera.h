@@ -35,7 +35,8 @@ class Pinhole {
 public:
     /// part: must lie within its picture. camera: check_camera() must accept it; an up along the
     /// view is replaced by an axis that is not.
-    Pinhole(const Camera& camera, const PicturePart& part);
+    /// scene: has the textures of the camera's bump, and must outlive it; null: it has none.
+    Pinhole(const Camera& camera, const PicturePart& part, const Scene* scene = nullptr);
     Pinhole(const Camera& camera, uint32_t width, uint32_t height)
         : Pinhole(camera, {{width, height}, 0, 0, {width, height}}) {}
 
@@ -52,7 +53,11 @@ public:
     const dvec3& right() const { return right_; }
 
 private:
+    Ray straight_ray(const dvec2& at) const;
+
     PicturePart part_;
+    const Scene* scene_;
+    std::optional<Bump> bump_;
     dvec3 eye_, right_, up_;
     // From the eye to the middle of the image plane, and from there to its right and upper edge.
     dvec3 middle_, to_right_, to_top_;

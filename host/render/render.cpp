@@ -143,7 +143,7 @@ Result<RenderReport> render_picture(const Scene& scene, const Camera& camera, Ba
     const Stopwatch watch;
     const double cpu_before = cpu_seconds();
     const ImageSize whole{film.width(), film.height()};
-    const Pinhole pinhole(camera, options.part.value_or(PicturePart{whole, 0, 0, whole}));
+    const Pinhole pinhole(camera, options.part.value_or(PicturePart{whole, 0, 0, whole}), &scene);
     const std::unique_ptr<Integrator> integrator = make_integrator(scene, camera, options);
     const Sight sight(scene, options.cutouts);
     const size_t lights = scene.lights.size();

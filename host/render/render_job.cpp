@@ -275,7 +275,7 @@ private:
         contents.notes = notes_of(frame);
         if (job_.aovs.any()) {
             Result<std::vector<Layer>> traced =
-                checked(trace_aovs(scene_, Pinhole(shot.camera, *options_.part),
+                checked(trace_aovs(scene_, Pinhole(shot.camera, *options_.part, &scene_),
                                    Sight(scene_, options_.cutouts), backend_, job_.aovs));
             if (!traced)
                 return traced.error();
@@ -462,7 +462,7 @@ static std::vector<Ray> camera_sample(const RenderJob& job, const PicturePart& p
     const Camera camera = !job.shots.empty() && job.shots[0].camera
                               ? *job.shots[0].camera
                               : still_camera(scene, job, part.picture);
-    const Pinhole pinhole(camera, part);
+    const Pinhole pinhole(camera, part, &scene);
     for (uint32_t i = 0; i < kSide * kSide; ++i)
         rays.push_back(pinhole.ray(i % kSide * part.size.width / kSide,
                                    i / kSide * part.size.height / kSide, dvec2(0.5)));

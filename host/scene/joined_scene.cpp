@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cassert>
 #include <iterator>
 #include <utility>
@@ -28,6 +29,7 @@ public:
     void add(NamedScene next) {
         Scene& scene = next.scene;
         add_instancing(scene);
+        move_bumps(scene, uint32_t(all_.textures.size()), uint32_t(all_.bumps.size()));
         take_first(all_.camera, scene.camera, next.name, "camera");
         all_.moves = all_.moves || scene.moves;
         take_first(all_.size, scene.size, next.name, "picture's size");
@@ -52,6 +54,7 @@ public:
                 texture.image->picture += uint32_t(all_.pictures.size());
         move_textures(scene, textures, materials);
         append(all_.pictures, scene.pictures);
+        append(all_.bumps, scene.bumps);
         append(all_.textures, scene.textures);
         append(all_.materials, scene.materials);
         append(all_.cutouts, scene.cutouts);
@@ -76,11 +79,10 @@ private:
     static void move_textures(Scene& scene, uint32_t textures, uint32_t materials) {
         std::vector<bool> mixes(scene.textures.size());
         for (Material& material : scene.materials) {
-            material.under += material.under == kNone ? 0 : materials;
+            for (uint32_t* other : {&material.under, &material.inside})
+                *other += *other == kNone ? 0 : materials;
             if (material.mix)
                 mixes[material.mix->texture] = true;
-            if (material.bump)
-                material.bump->pattern.texture += textures;
             if (material.normal_map)
                 material.normal_map->texture += textures;
             if (auto& maps = material.maps)
@@ -91,11 +93,29 @@ private:
                 if (*placed)
                     (*placed)->texture += textures;
         }
-        for (size_t t = 0; t < scene.textures.size(); ++t)
+        for (size_t t = 0; t < scene.textures.size(); ++t) {
             for (TextureStop& stop : scene.textures[t].stops)
                 stop.texture += stop.texture == kNoTexture ? 0 : mixes[t] ? materials : textures;
+            for (FormulaStep& step : scene.textures[t].pattern.formula.steps)
+                if (step.kind >= FormulaStep::Kind::Value)
+                    step.index += textures;
+        }
         for (PlacedTexture& layer : scene.background.layers)
             layer.texture += textures;
+    }
+
+    static void move_bumps(Scene& scene, uint32_t textures, uint32_t bumps) {
+        const auto move = [&](Bump& bump) {
+            bump.pattern.texture += textures;
+            for (uint32_t& part : bump.parts)
+                part += bumps;
+        };
+        std::for_each(scene.bumps.begin(), scene.bumps.end(), move);
+        for (Material& material : scene.materials)
+            if (material.bump)
+                move(*material.bump);
+        if (scene.camera && scene.camera->bump)
+            move(*scene.camera->bump);
     }
 
     template <class T>

@@ -3,6 +3,7 @@
 #include "host/shade/finish.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numbers>
 
@@ -61,12 +62,27 @@ static double highlight(const SurfacePoint& surface, const dvec3& towards) {
     return sum;
 }
 
+/// Returns a number from 0 to 1 that depends on the place alone.
+/// Hash: Steele, Lea and Flood 2014, SplitMix64.
+static float random_share(const dvec3& at) {
+    uint64_t bits = 0;
+    for (int i = 0; i < 3; ++i) {
+        bits = (bits ^ std::bit_cast<uint64_t>(at[i])) + 0x9e3779b97f4a7c15u;
+        bits = (bits ^ (bits >> 30)) * 0xbf58476d1ce4e5b9u;
+        bits = (bits ^ (bits >> 27)) * 0x94d049bb133111ebu;
+        bits ^= bits >> 31;
+    }
+    return float(bits >> 40) * 0x1p-24f;
+}
+
 vec3 finish_light(const SurfacePoint& surface, const dvec3& towards, const vec3& arriving,
                   bool highlights) {
     const Finish& finish = *surface.material->finish;
     const double cosine = glm::dot(surface.normal, towards);
-    vec3 light = surface.color * (surface.opacity * finish.diffuse *
-                                  float(std::pow(cosine, double(finish.brilliance))));
+    const float grain = finish.crand > 0 ? finish.crand * random_share(surface.position) : 0;
+    vec3 light = surface.color *
+                 (surface.opacity *
+                  (finish.diffuse * float(std::pow(cosine, double(finish.brilliance))) - grain));
     if (highlights)
         light += surface.maps.gloss() * metallic_tint(surface, finish.metallic, cosine) *
                  float(highlight(surface, towards));

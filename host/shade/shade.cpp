@@ -54,20 +54,40 @@ static dvec3 turned(const dmat3& turn, const vec3& normal) {
     return length > 0 ? n / length : n;
 }
 
-static dvec3 interpolated_normal(const Scene& scene, const MeshInfo& mesh, const Hit& hit,
-                                 const dvec3& fallback) {
+/// Returns the normals of the hit triangle's corners in the world, or nothing where it has none.
+static std::optional<std::array<dvec3, 3>> corner_normals(const Scene& scene, const MeshInfo& mesh,
+                                                          const Hit& hit) {
     const PerCorner<vec3> normals = scene.normals_of(mesh);
     if (normals.empty())
-        return fallback;
+        return std::nullopt;
     const std::array<vec3, 3> corner = normals.of(hit.id.prim);
-    dvec3 corners[3] = {dvec3(corner[0]), dvec3(corner[1]), dvec3(corner[2])};
+    std::array<dvec3, 3> corners{dvec3(corner[0]), dvec3(corner[1]), dvec3(corner[2])};
     if (mesh.turn != dmat3(1))
-        for (int i = 0; i < 3; ++i)
+        for (size_t i = 0; i < 3; ++i)
             corners[i] = turned(mesh.turn, corner[i]);
+    return corners;
+}
+
+static dvec3 interpolated_normal(const std::array<dvec3, 3>& corners, const Hit& hit,
+                                 const dvec3& fallback) {
     const dvec3 n = (1 - hit.u - hit.v) * corners[0] + hit.u * corners[1] + hit.v * corners[2];
     const double length = glm::length(n);
     // Opposite or missing normals cancel out; the plane's own normal takes their place.
     return length > 1e-6 && std::isfinite(length) ? n / length : fallback;
+}
+
+/// Returns the point of the curved surface that a point of the triangle stands for: halfway to the
+/// mean of its projections on the corners' tangent planes, which is exact to the fourth order of
+/// the angle between them for a sphere. w: the weights of the corners.
+/// Boubekeur and Alexa 2008, "Phong tessellation".
+static dvec3 on_curve(const Triangle& t, const std::array<dvec3, 3>& normals, const dvec3& w,
+                      const dvec3& at) {
+    dvec3 sum(0);
+    for (int i = 0; i < 3; ++i) {
+        const dvec3& n = normals[size_t(i)];
+        sum += w[i] * glm::dot(t[size_t(i)] - at, n) * n;
+    }
+    return is_finite(sum) ? at + 0.5 * sum : at;
 }
 
 static dvec3 facing(const dvec3& normal, const dvec3& towards) {
@@ -89,6 +109,14 @@ static dvec3 weights_off_edges(const Hit& hit, const Triangle& t, double doubled
     return least + (1 - least.x - least.y - least.z) * glm::clamp(weights, 0.0, 1.0);
 }
 
+/// Returns the number of the material on the side of the surface that is seen.
+static uint32_t side_of(const Scene& scene, uint32_t material, bool from_outside) {
+    if (from_outside || material >= scene.materials.size())
+        return material;
+    const uint32_t inside = scene.materials[material].inside;
+    return inside == kNone ? material : inside;
+}
+
 SurfacePoint surface_point(const Scene& scene, const Ray& ray, const Hit& hit, const Cone& cone) {
     assert(hit.is_hit() && hit.id.mesh < scene.meshes.size());
     const MeshInfo& mesh = scene.meshes[hit.id.mesh];
@@ -100,8 +128,10 @@ SurfacePoint surface_point(const Scene& scene, const Ray& ray, const Hit& hit, c
     s.entering = glm::dot(outwards, ray.dir) <= 0;
     s.view = glm::normalize(ray.dir);
     s.geometric_normal = (s.entering ? 1.0 : -1.0) * (outwards / doubled_area);
+    const auto normals = corner_normals(scene, mesh, hit);
     s.normal =
-        facing(interpolated_normal(scene, mesh, hit, s.geometric_normal), s.geometric_normal);
+        normals ? facing(interpolated_normal(*normals, hit, s.geometric_normal), s.geometric_normal)
+                : s.geometric_normal;
 
     // Computed from the corners, the position errs by a few ulp of their coordinates, however far
     // away the ray began.
@@ -112,11 +142,12 @@ SurfacePoint surface_point(const Scene& scene, const Ray& ray, const Hit& hit, c
     const dvec3 on_plane = w[0] * t[0] + w[1] * t[1] + w[2] * t[2];
     s.position = on_plane + offset * s.geometric_normal;
     s.beyond = on_plane - offset * s.geometric_normal;
-    TexturePoint point{on_plane};
+    TexturePoint point(normals && mesh.curved ? on_curve(t, *normals, w, on_plane) : on_plane,
+                       s.normal, s.view);
     if (!scene.textures.empty())
         take_texture_place(scene, mesh, t, hit, cone.width_at(hit.t * glm::length(ray.dir)), s,
                            point);
-    take_material(scene, mesh.material, point, s);
+    take_material(scene, side_of(scene, mesh.material, s.entering), point, s);
     return s;
 }
 
@@ -127,7 +158,8 @@ vec3 background_color(const Scene& scene, const vec3& up, const dvec3& dir) {
     vec3 seen = glm::mix(background.horizon, background.zenith, std::clamp(height, 0.0f, 1.0f));
     for (const PlacedTexture& layer : background.layers) {
         const TransparentColor c = color_at(scene.textures, layer.texture, layer.at(towards));
-        seen = c.opacity() * c.rgb + c.through() * seen;
+        seen = c.opacity() * c.rgb +
+               (background.tints ? c.through() : vec3(c.filter + c.transmit)) * seen;
     }
     return seen;
 }
@@ -214,6 +246,17 @@ Branches branches(const SurfacePoint& surface, bool total) {
     if (total)
         return {vec3(mirror + through), vec3(0), mirror + through, 0};
     return {vec3(mirror), through * material.filter, mirror, through};
+}
+
+vec3 share_kept(const Ray& ray, const SurfacePoint& surface) {
+    const std::optional<Absorption>& absorption = surface.material->absorption;
+    if (!absorption || surface.entering)
+        return vec3(1);
+    const double way = glm::distance(surface.position, ray.org) / double(absorption->distance);
+    const double share = absorption->power >= 1000
+                             ? std::exp(-way)
+                             : 1 / (1 + std::pow(way, double(absorption->power)));
+    return glm::mix(absorption->color, vec3(1), float(share));
 }
 
 Ray mirror_ray(const Ray& ray, const SurfacePoint& surface) {

@@ -93,6 +93,10 @@ struct Branches {
 /// Returns the shares of a surface. total: nothing goes through, and all light is reflected.
 Branches branches(const SurfacePoint& surface, bool total);
 
+/// Returns the share, for each color, that is left of light after the ray's way to the surface from
+/// inside of its solid.
+vec3 share_kept(const Ray& ray, const SurfacePoint& surface);
+
 /// Returns the mirrored ray, which never goes below the triangle's plane.
 Ray mirror_ray(const Ray& ray, const SurfacePoint& surface);
 

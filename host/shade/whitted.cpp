@@ -2,10 +2,13 @@
 // At a surface Whitted's integrator adds its own color, asks every light, and may follow two rays.
 #include "host/shade/whitted.h"
 
+#include "host/shade/fog.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <vector>
 
 namespace ovc {
@@ -26,6 +29,16 @@ static constexpr float kMinShadow = 1 / 4096.0f;
 static vec3 light_through(const SurfacePoint& surface) {
     return surface.material->finish ? surface.through
                                     : branches(surface, /* total= */ false).through;
+}
+
+/// Returns whether the ray reaches the surface from inside of a solid that lets light through.
+/// Light inside of others comes from the camera's being there, as in a room.
+static bool is_inside(const Scene& scene, const Ray& ray, const Hit& hit) {
+    const uint32_t material = scene.meshes[hit.id.mesh].material;
+    if (material >= scene.materials.size() || scene.materials[material].transmission == 0)
+        return false;
+    const Triangle t = scene.soup.triangle(hit.id);
+    return glm::dot(glm::cross(t[1] - t[0], t[2] - t[0]), ray.dir) > 0;
 }
 
 static bool lets_light_through(const SurfacePoint& surface) {
@@ -68,16 +81,29 @@ void Whitted::shade(std::span<const Ray> rays, std::span<const Path> paths,
     std::vector<Met> all;
     all.reserve(rays.size());
     for (size_t i = 0; i < rays.size(); ++i) {
+        Path path = paths[i];
+        dim_by_fog(rays[i], hits[i], path, film);
         if (!hits[i].is_hit()) {
-            film.add(paths[i].pixel, paths[i].weight * background_color(scene_, up_, rays[i].dir));
+            film.add(path.pixel, path.weight * background_color(scene_, up_, rays[i].dir));
             continue;
         }
-        const Met& met = all.emplace_back(meet(rays[i], paths[i], hits[i], spawned));
+        const Met& met = all.emplace_back(meet(rays[i], path, hits[i], spawned));
         film.add(met.pixel, met.weight * ambient_light(scene_.background, up_, met.surface));
     }
     for (uint32_t light = 0; light < scene_.lights.size(); ++light)
         for (const Met& met : all)
             light_up(scene_.lights[light], light, met, film, spawned);
+}
+
+/// Takes the light that fog keeps from the path, and adds the fog's own. There is none inside of
+/// solids.
+void Whitted::dim_by_fog(const Ray& ray, const Hit& hit, Path& path, Film& film) const {
+    const std::vector<Fog>& fogs = scene_.background.fogs;
+    if (fogs.empty() || (hit.is_hit() && is_inside(scene_, ray, hit)))
+        return;
+    const ThroughFog fog = through_fog(fogs, ray, hit.is_hit() ? hit.t : double(INFINITY));
+    film.add(path.pixel, path.weight * fog.added);
+    path.weight *= fog.share;
 }
 
 /// Divides the path's weight among the surface's own color and the two rays that may leave it. The
@@ -86,16 +112,18 @@ Whitted::Met Whitted::meet(const Ray& ray, const Path& path, const Hit& hit,
                            Spawned& spawned) const {
     Met met{surface_point(scene_, ray, hit, path.cone), hit.id, path.pixel, path.weight};
     const Cone cone{path.cone.width_at(hit.t * glm::length(ray.dir)), path.cone.spread};
+    const vec3 arriving = path.weight * share_kept(ray, met.surface);
+    met.weight = arriving;
     const bool clear = lets_light_through(met.surface);
     const std::optional<Ray> refracted = clear ? refracted_ray(ray, met.surface) : std::nullopt;
     const bool total = clear && !refracted;
     const Branches parts = branches(met.surface, total);
     const auto follow = [&](const vec3& share, float taken, RayKind kind, int deeper,
                             auto&& child) {
-        const vec3 weight = path.weight * share;
+        const vec3 weight = arriving * share;
         if (path.depth >= max_depth_ || max_component(weight) < kMinWeight)
             return;
-        met.weight -= path.weight * taken;
+        met.weight -= arriving * taken;
         const bool reflected = path.reflected || kind == RayKind::Reflection;
         spawned.paths.push(child(), hit.id,
                            {path.pixel, path.sample, uint16_t(path.depth + deeper), kind, reflected,
@@ -124,7 +152,7 @@ void Whitted::light_up(const Light& light, uint32_t number, const Met& met, Film
 
 bool Whitted::pass(const Hit& hit, Ray& ray, Shadow& shadow) const {
     const SurfacePoint glass = surface_point(scene_, ray, hit);
-    shadow.arriving *= light_through(glass);
+    shadow.arriving *= light_through(glass) * share_kept(ray, glass);
     if (max_component(shadow.arriving) < kMinShadow)
         shadow.arriving = vec3(0);
     ++shadow.passed;

@@ -38,6 +38,7 @@ public:
 
 private:
     struct Met;
+    void dim_by_fog(const Ray& ray, const Hit& hit, Path& path, Film& film) const;
     Met meet(const Ray& ray, const Path& path, const Hit& hit, Spawned& spawned) const;
     void light_up(const Light& light, uint32_t number, const Met& met, Film& film,
                   Spawned& spawned) const;

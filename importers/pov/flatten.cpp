@@ -42,10 +42,19 @@ struct Inherited {
     const Texture* texture = nullptr; // null: the scene's default
     dmat4 texture_placed{1};          // applied after the texture's own transformation
     const Interior* interior = nullptr;
+    const Texture* inside = nullptr; // of the inner sides, with the placing of `texture`
     uint32_t seen_by = kSeenByAll;
     bool uv_mapping = false;
     bool inverse = false;
 };
+
+/// Returns whether the object's triangles stand for a surface that has their normals. Those of a
+/// mesh are what povray draws itself.
+bool is_curved(const Object& object) {
+    static constexpr std::string_view kMeshes[] = {"mesh", "mesh2", "smooth_triangle",
+                                                   "height_field", "bicubic_patch"};
+    return std::find(std::begin(kMeshes), std::end(kMeshes), object.kind) == std::end(kMeshes);
+}
 
 void add_light(const LightSource& source, const dmat4& placed, Scene& scene) {
     Light light = source.light;
@@ -101,6 +110,7 @@ private:
         tell_all(object.notes, look_);
         from.texture_placed = object.texture ? from.placed : from.texture_placed;
         from.texture = object.texture ? &*object.texture : from.texture;
+        from.inside = object.inside_texture ? &*object.inside_texture : from.inside;
         from.placed = from.placed * object.placed;
         from.in_solid = from.in_solid * object.placed;
         from.interior = object.interior ? &*object.interior : from.interior;
@@ -122,7 +132,9 @@ private:
         const bool has_uv = !in_solid && (object.kind == "mesh" || object.kind == "mesh2");
         const bool has_holes = pigment.holes && (!on_uv || has_uv);
         const Color& color = has_holes ? pigment.holes->color : pigment.color;
-        Cover cover{materials_.number(texture, color, from.texture_placed, from.interior)};
+        Cover cover{
+            materials_.number(texture, color, from.texture_placed, from.interior, from.inside)};
+        cover.curved = is_curved(object);
         if (has_holes)
             cover.holes = holes.number(
                 pigment, on_uv ? pigment.placed : from.texture_placed * pigment.placed, on_uv);
@@ -245,7 +257,9 @@ int segments_within(double tolerance) {
 int choose_segments(const Gatherer& gatherer, std::optional<double> tolerance) {
     if (tolerance)
         return segments_within(*tolerance);
-    int segments = kMaxSegments;
+    int segments = kFineSegments;
+    if (triangles_at(gatherer, segments) - triangles_at(gatherer, 0) > kMaxFineTriangles)
+        segments = kMaxSegments;
     while (segments > 8 &&
            triangles_at(gatherer, segments) - triangles_at(gatherer, 0) > kMaxRoundTriangles)
         segments = std::max(8, segments * 3 / 4 / 4 * 4);
@@ -407,6 +421,7 @@ Box reach_of_solids(const Box& world) {
 /// What the triangles of a mesh have in common.
 struct MeshKey {
     uint32_t material, cutout, seen_by;
+    bool curved;
 
     auto operator<=>(const MeshKey&) const = default;
 };
@@ -417,7 +432,8 @@ public:
     Batches(const HoleTable& holes, const dvec3& origin) : holes_(holes), origin_(origin) {}
 
     void add(const Facets& facets, const Placed& p) {
-        const MeshKey key{p.cover.material, holes_.cutout(p.cover.holes), p.seen_by};
+        const MeshKey key{p.cover.material, holes_.cutout(p.cover.holes), p.seen_by,
+                          p.cover.curved};
         add_corners(facets, p, holes_, origin_, all_[key]);
     }
 
@@ -440,6 +456,7 @@ private:
             scene.add_mesh(scene.materials[key.material].name, key.material,
                            Chunk::owning(origin_, std::move(batch.corners)),
                            batch.smooth ? std::move(batch.normals) : std::vector<vec3>());
+        scene.meshes[mesh].curved = key.curved && batch.smooth;
         scene.meshes[mesh].cutout = key.cutout;
         scene.meshes[mesh].uv = std::move(batch.uv);
         scene.show(mesh, key.seen_by);

@@ -11,6 +11,7 @@ namespace ovc::pov {
 struct Look {
     Texture defaults;
     vec3 ambient_light{1};
+    bool before_3_7 = false; // the scene's version is below 3.7
     uint64_t max_triangles = kDefaultMostTriangles;
     std::optional<double> tolerance;       // as in ImportOptions
     std::function<void(const Note&)> tell; // gets the notes of all objects drawn; may be empty
@@ -25,6 +26,9 @@ void flatten(const std::vector<ObjectPtr>& objects, const Look& look, Scene& sce
 /// scene's round shapes would have more than kMaxRoundTriangles triangles.
 inline constexpr int kMaxSegments = 96;
 inline constexpr double kMaxRoundTriangles = 3e6;
+/// But a scene whose round shapes are few has this many, so that edges lie where they should.
+inline constexpr int kFineSegments = 192;
+inline constexpr double kMaxFineTriangles = 150'000;
 
 /// A plane reaches this many times as far as the scene, or as its distance from the scene if that
 /// is larger. The horizon is too low by the camera's height over that reach, in radians.

@@ -14,6 +14,7 @@ namespace ovc::pov {
 struct Cover {
     uint32_t material = 0;
     uint32_t holes = kNone;
+    bool curved = false; // the triangles stand for a curved surface
 };
 
 class HoleTable {

@@ -22,14 +22,38 @@ static size_t color_key(const ovc::Material& m) {
     return key;
 }
 
+/// Tells the notes of a pattern's stops.
+static void tell_of_stops(const PatternPtr& pattern, const Look& look) {
+    if (!pattern)
+        return;
+    for (const MapStop& stop : pattern->stops) {
+        tell_all(stop.pigment.notes, look);
+        tell_of_stops(stop.pigment.pattern, look);
+        if (stop.normal) {
+            tell_all(stop.normal->pattern.notes, look);
+            tell_of_stops(stop.normal->pattern.pattern, look);
+        }
+    }
+}
+
 uint32_t MaterialTable::number(const Texture& texture, const Color& color, const dmat4& placed,
-                               const Interior* interior) {
+                               const Interior* interior, const Texture* inside) {
     for (const Notes* notes : {&texture.notes, &texture.pigment.notes, &texture.surface.notes,
                                &texture.mix.notes, &texture.normal.pattern.notes})
         tell_all(*notes, look_);
+    tell_of_stops(texture.pigment.pattern, look_);
+    tell_of_stops(texture.normal.pattern.pattern, look_);
     if (interior)
         tell_all(interior->notes, look_);
     ovc::Material material = made(texture, color, placed, interior);
+    if (inside) {
+        material.inside = number(*inside, inside->pigment.color, placed, interior);
+        const ovc::Material& inner = scene_.materials[material.inside];
+        material.mirror = std::max(material.mirror, inner.mirror);
+        if (material.transmission == 0)
+            material.filter = vec3(0); // light that comes from inside may pass, none from outside
+        material.transmission = std::max(material.transmission, inner.transmission);
+    }
     const auto [first, last] = by_color_.equal_range(color_key(material));
     for (auto known = first; known != last; ++known) {
         const ovc::Material& other = scene_.materials[known->second];
@@ -59,6 +83,31 @@ void MaterialTable::mix(const Texture& texture, const dmat4& placed, const Inter
     material.mix = textures_.of_materials(map, materials, within);
 }
 
+Bump MaterialTable::bump(const Normal& normal, const dmat4& placed) {
+    const dmat4 within = placed * normal.pattern.placed;
+    const PatternMap& map = *normal.pattern.pattern;
+    Bump made{normal.kind,     normal.amount,
+              normal.accuracy, textures_.of_pigments(map, within),
+              normal.profile,  {}};
+    if (!map.stops.front().normal)
+        return made;
+    made.kind = Bump::Kind::Mix;
+    for (const MapStop& stop : map.stops) {
+        Bump part; // of no amount
+        if (stop.normal && stop.normal->pattern.pattern)
+            part = bump(*stop.normal, within);
+        else {
+            part.amount = 0;
+            part.pattern = made.pattern;
+        }
+        const auto known = std::find(scene_.bumps.begin(), scene_.bumps.end(), part);
+        made.parts.push_back(uint32_t(known - scene_.bumps.begin()));
+        if (known == scene_.bumps.end())
+            scene_.bumps.push_back(std::move(part));
+    }
+    return made;
+}
+
 ovc::Material MaterialTable::made(const Texture& texture, const Color& color, const dmat4& placed,
                                   const Interior* interior) {
     ovc::Material material;
@@ -66,10 +115,11 @@ ovc::Material MaterialTable::made(const Texture& texture, const Color& color, co
     const bool varies = pigment.pattern && !texture.mix.pattern;
     Finish finish = texture.surface.finish;
     finish.ambient = texture.surface.ambient * look_.ambient_light + texture.surface.emission;
+    finish.filter_by_brightest = look_.before_3_7;
     if (!varies) {
-        const float opacity = std::clamp(color.opacity(), 0.0f, 1.0f);
-        finish.diffuse *= opacity;
-        finish.ambient *= opacity;
+        const float share = std::clamp(opacity(color, look_.before_3_7), 0.0f, 1.0f);
+        finish.diffuse *= share;
+        finish.ambient *= share;
     }
     material.color = color.rgb;
     material.mirror =
@@ -87,10 +137,10 @@ ovc::Material MaterialTable::made(const Texture& texture, const Color& color, co
     const double ior = texture.surface.ior.value_or(interior ? interior->ior : 1);
     material.ior = is_usable_ior(ior) ? ior : 1;
     material.finish = finish;
-    if (const Normal& normal = texture.normal; normal.pattern.pattern)
-        material.bump =
-            Bump{normal.kind, normal.amount, normal.accuracy,
-                 textures_.of_pigments(*normal.pattern.pattern, placed * normal.pattern.placed)};
+    if (interior && interior->absorption.power > 0 && interior->absorption.distance > 0)
+        material.absorption = interior->absorption;
+    if (texture.normal.pattern.pattern)
+        material.bump = bump(texture.normal, placed);
     if (texture.mix.pattern)
         mix(texture, placed, interior, material);
     if (texture.under && material.transmission > 0)

@@ -17,9 +17,13 @@ public:
     MaterialTable(const Look& look, Scene& scene) : look_(look), scene_(scene), textures_(scene) {}
 
     /// Returns an index into Scene::materials. color: of the texture's pigment, perhaps without its
-    /// holes. placed: brings the texture into the world. interior: may be null.
+    /// holes. placed: brings the texture into the world. interior: may be null. inside: the texture
+    /// of the inner side, or null where it is the same.
     uint32_t number(const Texture& texture, const Color& color, const dmat4& placed,
-                    const Interior* interior);
+                    const Interior* interior, const Texture* inside = nullptr);
+
+    /// Returns the bump of a normal that has a pattern.
+    Bump bump(const Normal& normal, const dmat4& placed);
 
 private:
     ovc::Material made(const Texture& texture, const Color& color, const dmat4& placed,

@@ -65,8 +65,9 @@ struct Object {
     std::string refused;
     Notes notes; // about the object itself
 
-    dmat4 placed{1};                // from the object's own space to its parent's
-    std::optional<Texture> texture; // none: the parent's
+    dmat4 placed{1};                       // from the object's own space to its parent's
+    std::optional<Texture> texture;        // none: the parent's
+    std::optional<Texture> inside_texture; // of an interior_texture
     std::optional<Interior> interior;
     uint32_t depth = 1;            // levels of objects within objects, as parts, clips or bounds
     uint32_t seen_by = kSeenByAll; // as no_shadow, no_image and no_reflection leave it

@@ -3,6 +3,7 @@
 // docs/reference/pov.md says what is read.
 #include "importers/file/text.h"
 #include "importers/pov/flatten.h"
+#include "importers/pov/material_table.h"
 #include "importers/pov/parse/parse_camera.h"
 #include "importers/pov/parse/parse_object.h"
 #include "importers/pov/parse/parse_sky.h"
@@ -80,6 +81,10 @@ public:
         look_.max_triangles = options_.max_triangles;
         look_.tolerance = options_.tolerance;
         look_.tell = [&](const Note& note) { reader_.omit(note.kind, note.place, note.sentence); };
+        look_.before_3_7 = !reader_.has_linear_colors();
+        scene.background.tints = !look_.before_3_7;
+        if (camera_->normal.pattern.pattern)
+            scene.camera->bump = MaterialTable(look_, scene).bump(camera_->normal, dmat4(1));
         if (sky_)
             add_sky(*sky_, look_, scene);
         flatten(objects_, look_, scene);
@@ -101,8 +106,11 @@ private:
             parse_settings();
         else if (reader_.take("sky_sphere"))
             sky_ = parse_sky_sphere(reader_);
-        else if (token.is("fog") || token.is("media") || token.is("rainbow") ||
-                 token.is("photons") || token.is("radiosity")) {
+        else if (reader_.take("fog")) {
+            if (const Fog fog = parse_fog(reader_); fog.distance > 0)
+                scene.background.fogs.push_back(fog); // as povray, which draws none of no distance
+        } else if (token.is("media") || token.is("rainbow") || token.is("photons") ||
+                   token.is("radiosity")) {
             reader_.next();
             reader_.omit(token.name->text, token.place, token.name->text + " is left out");
             skip_braces(reader_, token.name->text);

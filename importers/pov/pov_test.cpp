@@ -365,13 +365,13 @@ TEST(PovErrors, WhatIsDeclaredAndNotSeenMayBeUnsupported) {
 TEST(PovWarnings, ComeOncePerKind) {
     std::vector<std::string> messages;
     const auto scene =
-        parse_pov("sphere { 0, 1 pigment { mandel 9 } }\nsphere { 0, 1 pigment { mandel 8 } }\n"
-                  "sphere { 0, 1 normal { ripples 1 } }",
+        parse_pov("sphere { 0, 1 pigment { tiling 9 } }\nsphere { 0, 1 pigment { tiling 8 } }\n"
+                  "sphere { 0, 1 normal { facets coords 1 } }",
                   "x.pov", gather(messages));
     EXPECT_TRUE(scene);
     ASSERT_EQ(messages.size(), 2u);
-    EXPECT_EQ(messages[0], "x.pov:1:25: the pattern 'mandel' is drawn by its average color\n"
-                           "    sphere { 0, 1 pigment { mandel 9 } }\n"
+    EXPECT_EQ(messages[0], "x.pov:1:25: the pattern 'tiling' is drawn by its average color\n"
+                           "    sphere { 0, 1 pigment { tiling 9 } }\n"
                            "                            ^");
 }
 
@@ -421,18 +421,18 @@ TEST(PovScene, AreaLightsAreGrids) {
 }
 
 TEST(PovWarnings, AreCountedOrErrors) {
-    const std::string text = "sphere { 0, 1 pigment { mandel 9 } }\n"
-                             "sphere { 0, 1 pigment { mandel 8 } }\nfog { distance 9 }";
+    const std::string text = "sphere { 0, 1 pigment { tiling 9 } }\n"
+                             "sphere { 0, 1 pigment { tiling 8 } }\nrainbow { distance 9 }";
     const Result<Scene> scene = parse(text);
     ASSERT_TRUE(scene);
     EXPECT_EQ(scene->omissions, (std::vector<Omission>{
-                                    {"fog is left out", 1},
-                                    {"the pattern 'mandel' is drawn by its average color", 2},
+                                    {"the pattern 'tiling' is drawn by its average color", 2},
+                                    {"rainbow is left out", 1},
                                 }));
     const Result<Scene> refused = parse_pov(text, "x.pov", {.strict = true});
     ASSERT_FALSE(refused);
     EXPECT_TRUE(refused.error().message.starts_with(
-        "x.pov:3:1: fog is left out, which --strict makes an error"))
+        "x.pov:3:1: rainbow is left out, which --strict makes an error"))
         << refused.error().message;
     EXPECT_TRUE(parse_pov("#warning \"so\" sphere { 0, 1 }", "x.pov", {.strict = true}));
 }

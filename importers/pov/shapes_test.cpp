@@ -188,7 +188,7 @@ TEST(PovShapes, FacetsLieWithinTheTolerance) {
         EXPECT_LE(max_off_the_ball(cut(tolerance)), tolerance + 1e-7) << tolerance;
         EXPECT_GE(max_off_the_ball(cut(tolerance)), tolerance / 4) << tolerance;
     }
-    EXPECT_NEAR(max_off_the_ball(cut({})), 0.0011, 0.0001); // as docs/reference/pov.md says
+    EXPECT_NEAR(max_off_the_ball(cut({})), 0.00027, 0.00001); // as docs/reference/pov.md says
 }
 
 TEST(PovShapes, ManyRoundThingsAreCutMoreCoarsely) {

@@ -54,10 +54,21 @@ uint32_t TextureTable::add(ovc::Texture texture, bool is_mix) {
     return number;
 }
 
+Pattern TextureTable::pattern_of(const PatternMap& map) {
+    Pattern pattern = map.pattern;
+    if (!map.program)
+        return pattern;
+    pattern.formula = map.program->formula;
+    move_textures(pattern.formula, copy_textures(map.program->textures, [&](ovc::Texture texture) {
+                      return add(std::move(texture), /* is_mix= */ false);
+                  }));
+    return pattern;
+}
+
 uint32_t TextureTable::number(const PatternMap& map) {
     if (const auto known = known_.find(&map); known != known_.end())
         return known->second;
-    ovc::Texture texture{map.pattern, {}};
+    ovc::Texture texture{pattern_of(map), {}};
     if (map.image_map) {
         texture.kind = TextureKind::Image;
         texture.image = map.image_map->image;
@@ -67,16 +78,22 @@ uint32_t TextureTable::number(const PatternMap& map) {
     for (const MapStop& stop : map.stops) {
         const Pigment& pigment = stop.texture ? stop.texture->pigment : stop.pigment;
         TextureStop made{stop.at, pigment.color};
-        if (pigment.pattern && pigment.placed == dmat4(1)) {
-            made.texture = number(*pigment.pattern);
-        } else if (pigment.pattern) {
-            ovc::Texture moved = scene_.textures[number(*pigment.pattern)];
-            put_in_front(pigment.placed, moved.pattern);
-            made.texture = add(std::move(moved), /* is_mix= */ false);
-        }
+        if (pigment.pattern)
+            made.texture = number(pigment);
         texture.stops.push_back(made);
     }
     return known_[&map] = add(std::move(texture), /* is_mix= */ false);
+}
+
+uint32_t TextureTable::number(const Pigment& pigment) {
+    if (!pigment.pattern)
+        return add({{}, {{0, pigment.color}}}, /* is_mix= */ false);
+    const uint32_t own = number(*pigment.pattern);
+    if (pigment.placed == dmat4(1))
+        return own;
+    ovc::Texture moved = scene_.textures[own];
+    put_in_front(pigment.placed, moved.pattern);
+    return add(std::move(moved), /* is_mix= */ false);
 }
 
 PlacedTexture TextureTable::of_pigments(const PatternMap& map, const dmat4& placed) {
@@ -85,21 +102,17 @@ PlacedTexture TextureTable::of_pigments(const PatternMap& map, const dmat4& plac
 
 PlacedTexture TextureTable::of_materials(const PatternMap& map, std::span<const uint32_t> materials,
                                          const dmat4& placed) {
-    ovc::Texture texture{map.pattern, {}};
+    ovc::Texture texture{pattern_of(map), {}};
     for (size_t i = 0; i < map.stops.size(); ++i)
         texture.stops.push_back({map.stops[i].at, {}, materials[i]});
     return placed_texture(add(std::move(texture), /* is_mix= */ true), placed);
 }
 
-ColorFormula color_function(const Pigment& pigment) {
-    if (!pigment.pattern)
-        return [color = pigment.color](const dvec3&) { return color; };
+ProgramPtr color_program(const Pigment& pigment) {
     Scene scratch;
-    const PlacedTexture placed =
-        TextureTable(scratch).of_pigments(*pigment.pattern, pigment.placed);
-    return [placed, textures = std::move(scratch.textures)](const dvec3& at) {
-        return color_at(textures, placed.texture, placed.at(at));
-    };
+    const uint32_t number = TextureTable(scratch).number(pigment);
+    scratch.textures.push_back(scratch.textures[number]); // the pigment is the last
+    return std::make_shared<const FormulaProgram>(FormulaProgram{{}, std::move(scratch.textures)});
 }
 
 bool lets_light_through(const Pigment& pigment) {

@@ -23,8 +23,12 @@ public:
     PlacedTexture of_materials(const PatternMap& map, std::span<const uint32_t> materials,
                                const dmat4& placed);
 
+    /// Returns the index of a texture of the pigment in its parent's space.
+    uint32_t number(const Pigment& pigment);
+
 private:
     uint32_t number(const PatternMap& map);
+    Pattern pattern_of(const PatternMap& map);
     uint32_t add(ovc::Texture texture, bool is_mix);
 
     Scene& scene_;
@@ -32,8 +36,9 @@ private:
     std::unordered_multimap<size_t, uint32_t> by_key_[2]; // of colors, of materials
 };
 
-/// Returns the pigment's color as a function of a point of its parent's space.
-ColorFormula color_function(const Pigment& pigment);
+/// Returns the textures of a pigment, which is the last of them, in its parent's space. There is no
+/// formula.
+ProgramPtr color_program(const Pigment& pigment);
 
 /// Returns whether a color of the pigment lets light through.
 bool lets_light_through(const Pigment& pigment);

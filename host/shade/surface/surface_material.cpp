@@ -57,16 +57,18 @@ static void take_color(const Scene& scene, const Material& material, const Textu
                        SurfacePoint& surface) {
     surface.material = &material;
     if (material.bump)
-        surface.normal = bumped(scene.textures, *material.bump, point.at, surface.normal);
+        surface.normal = bumped(scene.textures, scene.bumps, *material.bump, point.at, point.normal,
+                                point.view);
     if (material.normal_map)
         tilt_by_map(scene, *material.normal_map, point, surface);
     surface.color = material.color;
     if (material.texture) {
-        const TransparentColor color =
-            color_at(scene.textures, material.texture->texture, material.texture->at(point));
+        const PlacedTexture& placed = *material.texture;
+        const TransparentColor color = color_at(scene.textures, placed.texture, placed.at(point));
         surface.color = color.rgb;
         if (material.finish) {
-            surface.opacity = glm::clamp(color.opacity(), 0.0f, 1.0f);
+            surface.opacity =
+                glm::clamp(opacity(color, material.finish->filter_by_brightest), 0.0f, 1.0f);
             surface.through = material.transmission * color.through();
         }
     } else if (material.finish)
@@ -99,7 +101,7 @@ static vec3 add_coats(const Scene& scene, uint32_t number, const TexturePoint& p
 static vec3 add_mix(const Scene& scene, const PlacedTexture& placed, const TexturePoint& point,
                     const vec3& weight, const SurfacePoint& bare, std::vector<Coat>& coats) {
     const Texture& mix = scene.textures[placed.texture];
-    const PatternPlace place = evaluate(mix.pattern, placed.at(point).at);
+    const PatternPlace place = evaluate(scene.textures, mix.pattern, placed.at(point));
     const Between where = between(
         mix.stops.size(), [&](size_t i) { return mix.stops[i].at; }, place.value,
         is_discrete(mix.pattern.kind));

@@ -104,6 +104,8 @@ CameraValue parse_camera(Reader& reader) {
             camera.orthographic = true;
         else if (reader.take("perspective"))
             camera.orthographic = false;
+        else if (reader.take("normal"))
+            camera.normal = parse_normal(reader, {});
         else if (const auto m = take_transform(reader))
             placed = *m * placed;
         else if (token.kind == TokenKind::Name) {
@@ -112,7 +114,7 @@ CameraValue parse_camera(Reader& reader) {
                 reader.omit("projection", token.place,
                             fmt::format("the camera {} is taken for a perspective one",
                                         ovc::quoted(token.name->text)));
-            else if (token.is("aperture") || token.is("normal"))
+            else if (token.is("aperture"))
                 reader.omit(token.name->text, token.place,
                             fmt::format("the camera's {} is left out", token.name->text));
             skip_arguments(reader);

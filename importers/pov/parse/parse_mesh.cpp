@@ -145,7 +145,9 @@ std::array<uint32_t, 3> parse_indices(Reader& reader) {
     return indices;
 }
 
-std::vector<Face> parse_faces(Reader& reader) {
+/// textures: whether faces name theirs, which they do where a texture_list came before. Else the
+/// next face may be an expression that begins like a number.
+std::vector<Face> parse_faces(Reader& reader, bool textures) {
     reader.expect('{', "face_indices");
     const int count = parse_count(reader, 0);
     std::vector<Face> faces;
@@ -154,7 +156,7 @@ std::vector<Face> parse_faces(Reader& reader) {
         Face face;
         face.corner = face.normal = face.uv = parse_indices(reader);
         // A face has one texture, or one for each corner, of which we keep the first.
-        for (int t = 0; t < 3; ++t) {
+        for (int t = 0; textures && t < 3; ++t) {
             reader.take_comma();
             if (reader.peek().is('<') || reader.peek().is('}'))
                 break;
@@ -270,7 +272,7 @@ void parse_mesh2(Reader& reader, Object& object) {
         else if (reader.take("texture_list"))
             mesh.textures = parse_textures(reader);
         else if (reader.take("face_indices"))
-            mesh.faces = parse_faces(reader);
+            mesh.faces = parse_faces(reader, !mesh.textures.empty());
         else if (reader.take("normal_indices"))
             parse_more_indices(reader, "normal_indices", &Face::normal, mesh);
         else

@@ -17,6 +17,12 @@ static Bump::Kind bump_of(const Token& pattern) {
         return Bump::Kind::Noise;
     if (pattern.is("dents"))
         return Bump::Kind::Dents;
+    if (pattern.is("ripples"))
+        return Bump::Kind::Ripples;
+    if (pattern.is("waves"))
+        return Bump::Kind::Waves;
+    if (pattern.is("quilted"))
+        return Bump::Kind::Quilted;
     return pattern.is("wrinkles") ? Bump::Kind::Wrinkles : Bump::Kind::Height;
 }
 
@@ -28,8 +34,7 @@ static const Note* left_out_of_normal(Reader& reader, const Token& word) {
 
 /// Takes a part that Overcast leaves out.
 static bool take_other_part(Reader& reader, const Token& token, Normal& normal) {
-    if (!token.is("bump_map") && !token.is("normal_map") && !token.is("slope_map") &&
-        !token.is("uv_mapping"))
+    if (!token.is("bump_map") && !token.is("uv_mapping"))
         return false;
     reader.next();
     normal.pattern.notes.push_back(left_out_of_normal(reader, token));
@@ -37,12 +42,33 @@ static bool take_other_part(Reader& reader, const Token& token, Normal& normal) 
     return true;
 }
 
-Normal parse_normal(Reader& reader, const Normal& base) {
+std::vector<SlopeStop> parse_slope_map(Reader& reader) {
+    std::vector<SlopeStop> stops;
+    reader.expect('{', "slope_map");
+    while (!reader.take('}')) {
+        if (const auto map = take_named_if<ColorMap>(reader)) {
+            stops = map->slopes;
+            continue;
+        }
+        reader.expect('[', "slope_map's brace");
+        SlopeStop stop{parse_float(reader)};
+        reader.take_comma();
+        const Number n = resized(reader, parse_number(reader), 2);
+        stop.height = n.v[0];
+        stop.slope = n.v[1];
+        reader.expect(']', "an entry of a slope_map");
+        stops.push_back(stop);
+    }
+    std::stable_sort(stops.begin(), stops.end(),
+                     [](const SlopeStop& a, const SlopeStop& b) { return a.at < b.at; });
+    return stops;
+}
+
+Normal parse_normal_parts(Reader& reader, const Normal& base, char end) {
     const Deeper deeper(reader);
     Normal normal = base;
-    reader.expect('{', "normal");
     PatternParts pattern(reader, normal.pattern, MapOf::Normals);
-    while (!reader.take('}')) {
+    while (!reader.peek().is(end)) {
         const Token token = reader.peek();
         if (const auto named_normal = take_named_if<Normal>(reader)) {
             normal = *named_normal;
@@ -53,10 +79,14 @@ Normal parse_normal(Reader& reader, const Normal& base) {
             normal.amount = parse_float(reader);
         else if (reader.take("accuracy"))
             normal.accuracy = std::max(1e-6, parse_float(reader));
+        else if (reader.take("slope_map"))
+            normal.profile = parse_slope_map(reader);
         else if (take_other_part(reader, token, normal)) {
         } else if (pattern.take()) {
-            if (pattern.is_pattern(token))
+            if (pattern.is_pattern(token)) {
                 normal.kind = bump_of(token);
+                normal.profile.clear();
+            }
         } else if (starts_number(reader, token))
             normal.amount = parse_float(reader);
         else if (token.kind == TokenKind::Name && token.name->is_keyword) {
@@ -66,6 +96,13 @@ Normal parse_normal(Reader& reader, const Normal& base) {
             reader.fail_here("a part of a normal");
     }
     pattern.finish();
+    return normal;
+}
+
+Normal parse_normal(Reader& reader, const Normal& base) {
+    reader.expect('{', "normal");
+    Normal normal = parse_normal_parts(reader, base, '}');
+    reader.expect('}', "a normal");
     return normal;
 }
 

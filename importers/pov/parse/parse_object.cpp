@@ -166,6 +166,8 @@ bool parse_look(Reader& reader, Object& object) {
         const Material material = parse_material(reader);
         if (material.texture)
             add_texture(object, *material.texture);
+        if (material.inside)
+            object.inside_texture = material.inside;
         if (material.interior)
             object.interior = material.interior;
     } else if (reader.take("interior"))
@@ -217,6 +219,8 @@ void place(Object& object, const dmat4& by) {
     // What lies on texture coordinates moves with them, and not once more.
     if (object.texture && !object.uv_mapping && !object.texture->pigment.uv_mapping)
         place(*object.texture, by);
+    if (object.inside_texture)
+        place(*object.inside_texture, by);
     for (std::vector<ObjectPtr>* list : {&object.clips, &object.bounds})
         for (ObjectPtr& other : *list) {
             auto moved = std::make_shared<Object>(*other); // other objects may share it
@@ -281,11 +285,13 @@ void parse_modifiers(Reader& reader, Object& object) {
         else if (reader.take("inside_vector")) {
             parse_vector(reader);
             object.has_inside = true;
-        } else if (const auto texture = take_named_if<Texture>(reader))
+        } else if (reader.take("interior_texture"))
+            object.inside_texture = parse_texture(reader);
+        else if (const auto texture = take_named_if<Texture>(reader))
             add_texture(object, *texture); // old scenes name it without texture { }
         else if (token.kind == TokenKind::Name && token.name->is_keyword && !starts_object(token)) {
             reader.next(); // photons and the like
-            if (token.is("interior_texture") || token.is("cutaway_textures"))
+            if (token.is("cutaway_textures"))
                 object.notes.push_back(left_out(reader, "an object", token));
             skip_arguments(reader);
         } else if (!reader.take(',') && !reader.take(';'))

@@ -9,4 +9,7 @@ namespace ovc::pov {
 /// Reads a sky_sphere from its { on.
 SkySphere parse_sky_sphere(Reader& reader);
 
+/// Reads the { … } of a fog.
+Fog parse_fog(Reader& reader);
+
 } // namespace ovc::pov

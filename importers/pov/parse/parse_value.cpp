@@ -112,12 +112,15 @@ const std::unordered_map<std::string_view, ParseValue> kKinds = {
     {"pigment_map", [](Reader& r) -> Value { return parse_map(r, MapOf::Pigments); }},
     {"texture_map", [](Reader& r) -> Value { return parse_map(r, MapOf::Textures); }},
     {"normal", [](Reader& r) -> Value { return parse_normal(r, {}); }},
-    {"normal_map", parse_opaque},
-    {"slope_map", parse_opaque},
+    {"normal_map", [](Reader& r) -> Value { return parse_map(r, MapOf::Normals); }},
+    {"slope_map",
+     [](Reader& r) -> Value {
+         return ColorMap{{}, parse_slope_map(r)};
+     }},
     {"density", parse_opaque},
     {"density_map", parse_opaque},
     {"media", parse_opaque},
-    {"fog", parse_opaque},
+    {"fog", [](Reader& r) -> Value { return parse_fog(r); }},
     {"rainbow", parse_opaque},
     {"sky_sphere", [](Reader& r) -> Value { return parse_sky_sphere(r); }}};
 
@@ -206,10 +209,10 @@ Value parse_value(Reader& reader) {
 
 std::string kind_of(const Value& value) {
     static constexpr const char* kKindNames[] = {
-        "nothing",     "a number", "a text",      "an object",   "a texture",
-        "a pigment",   "a normal", "a finish",    "an interior", "a material",
-        "a color map", "a sky",    "a transform", "an array",    "a macro",
-        "a function",  "a spline", "a camera",    "a file",      "a block"};
+        "nothing",  "a number",    "a text",      "an object",  "a texture",   "a pigment",
+        "a normal", "a finish",    "an interior", "a material", "a color map", "a sky",
+        "a fog",    "a transform", "an array",    "a macro",    "a function",  "a spline",
+        "a camera", "a file",      "a block"};
     static_assert(std::size(kKindNames) == std::variant_size_v<Value::variant>);
     return kKindNames[value.index()];
 }

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "importers/pov/parse/pattern.h"
 
+#include "core/texture/fractal.h"
 #include "core/texture/pattern.h"
 #include "importers/file/text.h"
 #include "importers/pov/parse/texture.h"
+#include "importers/pov/pictures/density.h"
+#include "importers/pov/texture_table.h"
 #include "importers/pov/values/function.h"
 #include "importers/pov/words/block.h"
 
@@ -27,29 +30,42 @@ struct KindAndWave {
 
 const std::unordered_map<std::string_view, KindAndWave> kPatterns = {
     {"agate", {Kind::Agate}},
+    {"aoi", {Kind::AngleOfIncidence}},
     {"average", {Kind::Average}},
     {"boxed", {Kind::Boxed}},
     {"bozo", {Kind::Bozo}},
     {"bumps", {Kind::Bozo}},
+    {"cells", {Kind::Cells}},
+    {"crackle", {Kind::Crackle}},
     {"cylindrical", {Kind::Cylindrical}},
+    {"density_file", {Kind::Density}},
     {"dents", {Kind::Dents}},
+    {"function", {Kind::Function}},
     {"gradient", {Kind::Gradient}},
     {"granite", {Kind::Granite}},
+    {"julia", {Kind::Fractal}},
     {"leopard", {Kind::Leopard}},
+    {"magnet", {Kind::Fractal}},
+    {"mandel", {Kind::Fractal}},
     {"marble", {Kind::Marble, Wave::Triangular}},
     {"onion", {Kind::Onion}},
+    {"pigment_pattern", {Kind::Function}},
     {"planar", {Kind::Planar}},
+    {"quilted", {Kind::Quilted}},
     {"radial", {Kind::Radial}},
+    {"ripples", {Kind::Ripples}},
+    {"slope", {Kind::Slope}},
     {"spherical", {Kind::Spherical}},
     {"spiral1", {Kind::Spiral1, Wave::Triangular}},
+    {"spiral2", {Kind::Spiral2, Wave::Triangular}},
     {"spotted", {Kind::Bozo}},
+    {"waves", {Kind::Waves}},
     {"wood", {Kind::Wood, Wave::Triangular}},
     {"wrinkles", {Kind::Wrinkles}}};
 
-const std::unordered_map<std::string_view, Kind> kLists = {{"brick", Kind::Brick},
-                                                           {"checker", Kind::Checker},
-                                                           {"cubic", Kind::Cubic},
-                                                           {"hexagon", Kind::Hexagon}};
+const std::unordered_map<std::string_view, Kind> kLists = {
+    {"brick", Kind::Brick},     {"checker", Kind::Checker}, {"cubic", Kind::Cubic},
+    {"hexagon", Kind::Hexagon}, {"square", Kind::Square},   {"triangular", Kind::Triangular}};
 
 const std::unordered_map<std::string_view, Wave> kWaves = {
     {"ramp_wave", Wave::Ramp},   {"triangle_wave", Wave::Triangular},
@@ -64,19 +80,14 @@ bool is_one_of(const Token& token, const std::string_view (&words)[N]) {
 
 /// Returns whether the word is a pattern that Overcast draws by its average color.
 bool is_other_pattern(const Token& token) {
-    static constexpr std::string_view kWords[] = {
-        "aoi",      "cells",        "crackle",         "facets",
-        "julia",    "mandel",       "magnet",          "object",
-        "pavement", "quilted",      "pigment_pattern", "potential",
-        "ripples",  "slope",        "spiral2",         "square",
-        "tiles",    "tiling",       "tiling_list",     "triangular",
-        "waves",    "density_file", "function",        "image_pattern"};
+    static constexpr std::string_view kWords[] = {"facets",   "image_pattern", "object",
+                                                  "pavement", "potential",     "tiling"};
     return is_one_of(token, kWords);
 }
 
 bool is_map(const Token& token) {
     static constexpr std::string_view kWords[] = {"color_map", "colour_map", "pigment_map",
-                                                  "texture_map"};
+                                                  "texture_map", "normal_map"};
     return is_one_of(token, kWords);
 }
 
@@ -112,6 +123,11 @@ std::vector<MapStop> default_stops(const Token* word, Kind kind) {
     case Kind::Radial:
         return {stop(0, {0, 1, 1}), stop(0.333, {1, 1, 0}), stop(0.666, {1, 0, 1}),
                 stop(1, {0, 1, 1})};
+    case Kind::Square:
+        return {stop(0, {1, 0, 0}), stop(1, {0, 1, 0}), stop(2, {0, 0, 1}), stop(3, {1, 1, 0})};
+    case Kind::Triangular:
+        return {stop(0, {1, 0, 0}), stop(1, {0, 1, 0}), stop(2, {0, 0, 1}),
+                stop(3, {1, 1, 0}), stop(4, {0, 1, 1}), stop(5, {1, 0, 1})};
     case Kind::Wood:
         return {stop(0.6, {0.666f, 0.312f, 0.2f}), stop(0.6, {0.4f, 0.133f, 0.066f})};
     default:
@@ -126,7 +142,14 @@ MapStop parse_entry(Reader& reader, MapOf of, char end) {
     const auto take = [&](const Texture& texture) {
         made.texture = std::make_shared<const Texture>(texture);
     };
-    if (of == MapOf::Textures && end != 0)
+    const auto take_normal = [&](const Normal& normal) {
+        made.normal = std::make_shared<const Normal>(normal);
+    };
+    if (of == MapOf::Normals && end != 0)
+        take_normal(parse_normal_parts(reader, {}, end));
+    else if (reader.take("normal"))
+        take_normal(parse_normal(reader, {}));
+    else if (of == MapOf::Textures && end != 0)
         take(parse_texture_parts(reader, reader.defaults, end));
     else if (reader.take("texture"))
         take(parse_texture(reader));
@@ -148,13 +171,13 @@ bool list_goes_on(Reader& reader) {
     if (reader.take(','))
         return true;
     const Token next = reader.peek();
-    return starts_color(next) || next.is("pigment") || next.is("texture") ||
+    return starts_color(next) || next.is("pigment") || next.is("texture") || next.is("normal") ||
            named<Number>(reader, next);
 }
 
 bool starts_entry(const Reader& reader, const Token& token) {
     return starts_number(reader, token) || token.is("pigment") || token.is("texture") ||
-           named<Pigment>(reader, token) || named<Texture>(reader, token);
+           token.is("normal") || named<Pigment>(reader, token) || named<Texture>(reader, token);
 }
 
 /// Reads `0.3 color …`, `0.3 0.5 color … color …` or a pigment or texture, behind the [.
@@ -168,7 +191,8 @@ void parse_stop(Reader& reader, MapOf of, std::vector<MapStop>& stops) {
         stops.push_back(stop(where, vec3(0)));
         stops.back().pigment.color = color;
     };
-    if (token.kind == TokenKind::Number || token.is('(') || token.is('<')) {
+    if (of != MapOf::Normals &&
+        (token.kind == TokenKind::Number || token.is('(') || token.is('<'))) {
         const Number n = parse_number(reader);
         reader.take_comma();
         if (reader.peek().is(']')) {
@@ -180,7 +204,7 @@ void parse_stop(Reader& reader, MapOf of, std::vector<MapStop>& stops) {
         }
         return;
     }
-    if (starts_color(token)) {
+    if (starts_color(token) && of != MapOf::Normals) {
         add_color(at, parse_color(reader));
         return;
     }
@@ -248,6 +272,7 @@ void PatternParts::restart() {
     chosen_ = true;
     pattern_ = pigment_.pattern->pattern;
     stops_ = pigment_.pattern->stops;
+    program_ = pigment_.pattern->program;
 }
 
 bool PatternParts::is_pattern(const Token& token) {
@@ -260,6 +285,7 @@ void PatternParts::forget() {
     changed_ = true;
     stops_.clear();
     pattern_ = {};
+    program_.reset();
     pattern_.noise = reader_.noise_kind();
 }
 
@@ -269,6 +295,7 @@ void PatternParts::choose(Kind kind, Wave wave) {
     pattern_.kind = kind;
     pattern_.wave = wave;
     pattern_.parameters = {};
+    program_.reset();
     pigment_.holes.reset();
     pigment_.notes.clear();
 }
@@ -299,8 +326,10 @@ bool PatternParts::take() {
         return false;
     if (is_map(token)) {
         reader_.next();
-        stops_ =
-            parse_map(reader_, token.is("texture_map") ? MapOf::Textures : MapOf::Pigments).stops;
+        stops_ = parse_map(reader_, token.is("texture_map")  ? MapOf::Textures
+                                    : token.is("normal_map") ? MapOf::Normals
+                                                             : MapOf::Pigments)
+                     .stops;
         changed_ = true;
         return true;
     }
@@ -311,12 +340,8 @@ bool PatternParts::take_pattern(const Token& token) {
     if (is_other_pattern(token)) {
         reader_.next();
         refuse(token);
-        if (token.is("function"))
-            parse_function(reader_);
-        else if (token.is("object") || token.is("pigment_pattern"))
-            skip_braces(reader_, token.name->text);
-        else if (token.is("square") || token.is("tiles") || token.is("triangular"))
-            parse_list();
+        if (token.is("object"))
+            parse_object_list();
         else
             skip_arguments(reader_);
         return true;
@@ -338,9 +363,180 @@ void PatternParts::parse_arguments(const Token& token) {
         const double length = glm::length(direction);
         for (int i = 0; i < 3; ++i)
             pattern_.parameters[size_t(i)] = length > 0 ? direction[i] / length : 0;
-    } else if (token.is("spiral1")) {
+    } else if (token.is("spiral1") || token.is("spiral2"))
         pattern_.parameters[0] = parse_float(reader_);
+    else if (token.is("crackle"))
+        pattern_.parameters = {-1, 1, 0, 2, 0, 0};
+    else if (token.is("quilted"))
+        pattern_.parameters = {1, 1};
+    else if (token.is("function"))
+        take_function(token, parse_function(reader_));
+    else if (token.is("pigment_pattern"))
+        take_pigment_pattern();
+    else if (token.is("slope"))
+        parse_slope();
+    else if (token.is("density_file"))
+        take_density_file(token);
+    else if (pattern_.kind == Kind::Fractal)
+        parse_fractal(token);
+}
+
+void PatternParts::take_function(const Token& token, const Function& function) {
+    if (!function.formula) {
+        refuse(token); // of a transform, a spline or a color
+        return;
     }
+    program_ = function.program;
+}
+
+/// The value is the pigment's brightness.
+void PatternParts::take_pigment_pattern() {
+    const Pigment pigment = parse_pigment(reader_, reader_.defaults.pigment);
+    ProgramBuilder program;
+    for (uint32_t i = 0; i < 3; ++i)
+        program.add(FormulaStep::Kind::Argument, i);
+    program.texture(FormulaStep::Kind::Color, color_program(pigment), 5);
+    program_ = program.take();
+    pigment_.notes = pigment.notes;
+}
+
+/// Reads `{ DIRECTION, LOW, HIGH }` or `{ point_at POINT, LOW, HIGH }`, or the direction alone.
+void PatternParts::parse_slope() {
+    std::array<double, 10>& p = pattern_.parameters;
+    const bool braces = reader_.take('{');
+    p[5] = reader_.take("point_at") ? 1 : 0;
+    const dvec3 direction = parse_vector(reader_);
+    p[0] = direction.x, p[1] = direction.y, p[2] = direction.z;
+    p[4] = 1;
+    if (!braces)
+        return;
+    if (reader_.take(',')) {
+        p[3] = parse_float(reader_);
+        reader_.take_comma();
+        p[4] = parse_float(reader_);
+    }
+    if (reader_.take("altitude")) {
+        const dvec3 altitude = parse_vector(reader_);
+        double low = 0, high = 1;
+        if (reader_.take(',')) {
+            low = parse_float(reader_);
+            reader_.take_comma();
+            high = parse_float(reader_);
+        }
+        add_altitude(altitude, low, high);
+    }
+    reader_.expect('}', "slope");
+}
+
+/// The slope and the height along `altitude` have shares as the lengths of their vectors.
+void PatternParts::add_altitude(const dvec3& altitude, double low, double high) {
+    std::array<double, 10>& p = pattern_.parameters;
+    const double own = glm::length(dvec3(p[0], p[1], p[2])), other = glm::length(altitude);
+    if (!(other > 0) || high == low)
+        return;
+    const double share = other / (own + other);
+    const dvec3 step = altitude / other * (share / (high - low));
+    p[6] = step.x, p[7] = step.y, p[8] = step.z;
+    p[9] = -low * share / (high - low);
+    // The slope's part of the value is the rest.
+    const double width = (p[4] - p[3]) / (1 - share);
+    p[4] = p[3] + width;
+}
+
+/// Reads `[MAGNET] [mandel | julia COMPLEX,] ITERATIONS` behind the first word.
+void PatternParts::parse_fractal(const Token& token) {
+    using F = FractalParameter;
+    std::array<double, 10>& p = pattern_.parameters;
+    p[F::kExponent] = token.is("magnet") ? -parse_int(reader_, 1, 2, "the kind of a magnet") : 2;
+    const bool is_julia = token.is("magnet") ? reader_.take("julia") : token.is("julia");
+    if (token.is("magnet") && !is_julia && !reader_.take("mandel"))
+        reader_.fail_here("mandel or julia");
+    p[F::kIsJulia] = is_julia ? 1 : 0;
+    if (is_julia) {
+        const Number c = resized(reader_, parse_number(reader_), 2);
+        p[F::kX] = c.v[0], p[F::kY] = c.v[1];
+        reader_.take_comma();
+    }
+    p[F::kIterations] = std::clamp(parse_float(reader_), 1.0, kMaxFractalIterations);
+    p[F::kExterior] = 1;
+    p[F::kExteriorFactor] = p[F::kInteriorFactor] = 1;
+}
+
+/// Reads `df3 "name"`.
+void PatternParts::take_density_file(const Token& word) {
+    if (!reader_.take("df3"))
+        reader_.fail_here("df3");
+    const std::string name = parse_text(reader_);
+    const std::filesystem::path path = reader_.find_file(name, ".df3");
+    Result<DensityGrid> grid = path.empty()
+                                   ? Error{fmt::format("there is no file {}", ovc::quoted(name))}
+                                   : read_density(path);
+    if (grid) {
+        reader_.spend(grid->values.size() / 16);
+        pattern_.grid = std::move(*grid);
+        return;
+    }
+    refuse(word);
+    pigment_.notes = {reader_.note(
+        "density_file " + name, word.place,
+        fmt::format("{}: the density_file is drawn by its average color", grid.error().message))};
+}
+
+/// Takes `exponent`, `exterior` or `interior` of a fractal.
+bool PatternParts::take_fractal_part() {
+    using F = FractalParameter;
+    std::array<double, 10>& p = pattern_.parameters;
+    if (pattern_.kind != Kind::Fractal)
+        return false;
+    if (reader_.take("exponent")) {
+        p[F::kExponent] = parse_int(reader_, 2, 33, "the exponent of a fractal");
+        return true;
+    }
+    const bool outside = reader_.take("exterior");
+    if (!outside && !reader_.take("interior"))
+        return false;
+    const int kind = parse_int(reader_, 0, outside ? 8 : 6, "how a fractal is colored");
+    reader_.take_comma();
+    p[outside ? F::kExterior : F::kInterior] = kind;
+    p[outside ? F::kExteriorFactor : F::kInteriorFactor] = parse_float(reader_);
+    return true;
+}
+
+/// Takes a word that belongs to one pattern alone.
+bool PatternParts::take_own_part() {
+    std::array<double, 10>& p = pattern_.parameters;
+    if (take_fractal_part())
+        return true;
+    if (pattern_.kind == Kind::Quilted && reader_.take("control0"))
+        p[0] = parse_float(reader_);
+    else if (pattern_.kind == Kind::Quilted && reader_.take("control1"))
+        p[1] = parse_float(reader_);
+    else if (pattern_.kind == Kind::Density && reader_.take("interpolate"))
+        p[0] = parse_int(reader_, 0, 2, "interpolate");
+    else if (pattern_.kind != Kind::Crackle)
+        return false;
+    else if (reader_.take("form")) {
+        const dvec3 form = parse_vector(reader_);
+        p[0] = form.x, p[1] = form.y, p[2] = form.z;
+    } else if (reader_.take("metric"))
+        p[3] = std::max(1e-3, parse_float(reader_));
+    else if (reader_.take("offset"))
+        p[4] = parse_float(reader_);
+    else if (reader_.take("solid"))
+        p[5] = parse_flag(reader_) ? 1 : 0;
+    else
+        return false;
+    return true;
+}
+
+/// Reads the two textures, pigments or colors behind `object { … }` as average colors.
+void PatternParts::parse_object_list() {
+    skip_braces(reader_, "object");
+    reader_.take_comma();
+    if (of_ != MapOf::Normals)
+        parse_list();
+    else
+        skip_arguments(reader_);
 }
 
 bool PatternParts::take_list(const Token& token) {
@@ -353,14 +549,8 @@ bool PatternParts::take_list(const Token& token) {
     pattern_.steps.clear();
     if (found->second == Kind::Brick)
         pattern_.parameters = {8, 3, 4.5, 0.5};
-    if (of_ != MapOf::Normals)
+    if (of_ != MapOf::Normals || reader_.peek().is("normal"))
         parse_list();
-    else if (reader_.peek().is("normal")) {
-        refuse(token);
-        while (reader_.take("normal") || reader_.take(','))
-            if (reader_.peek().is('{'))
-                skip_braces(reader_, "normal");
-    }
     return true;
 }
 
@@ -393,7 +583,8 @@ bool PatternParts::take_wave(const Token& token) {
 }
 
 bool PatternParts::take_number(const Token& token) {
-    if (reader_.take("turbulence"))
+    if (take_own_part()) {
+    } else if (reader_.take("turbulence"))
         pattern_.turbulence = parse_vector(reader_);
     else if (reader_.take("octaves"))
         pattern_.octaves.count =
@@ -461,12 +652,43 @@ void PatternParts::take_warp() {
                 reader_.fail_here("'}' or a part of a warp's repeat");
         }
         add_step(step);
+    } else if (reader_.take("black_hole")) {
+        take_black_hole(token);
     } else {
         skip_block(reader_);
         if (token.kind == TokenKind::Name)
             pigment_.notes.push_back(reader_.note(
                 "warp", token.place, fmt::format("the warp {} is left out", token.name->text)));
     }
+}
+
+/// Reads `<center>, radius …` of a warp from behind its word.
+void PatternParts::take_black_hole(const Token& word) {
+    TextureStep step;
+    step.kind = TextureStep::Kind::BlackHole;
+    const dvec3 center = parse_vector(reader_);
+    reader_.take_comma();
+    step.rows[0] = dvec4(center, parse_float(reader_));
+    step.rows[1] = dvec4(1, 2, 0, 0);
+    step.rows[2] = dvec4(0);
+    while (!reader_.take('}')) {
+        if (reader_.take("strength"))
+            step.rows[1].x = parse_float(reader_);
+        else if (reader_.take("falloff"))
+            step.rows[1].y = parse_float(reader_);
+        else if (reader_.take("inverse"))
+            step.rows[1].z = parse_flag(reader_) ? 1 : 0;
+        else if (reader_.take("type"))
+            parse_float(reader_);
+        else if (const Token token = reader_.peek();
+                 reader_.take("repeat") || reader_.take("turbulence")) {
+            parse_vector(reader_);
+            pigment_.notes.push_back(reader_.note(
+                "black_hole", word.place, token.name->text + " of a black_hole is left out"));
+        } else
+            reader_.fail_here("'}' or a part of a black_hole");
+    }
+    add_step(step);
 }
 
 void PatternParts::finish() {
@@ -483,6 +705,7 @@ void PatternParts::finish() {
         pattern_.parameters[0] = agate_turb_.value_or(1);
     auto made = std::make_shared<PatternMap>();
     made->pattern = pattern_;
+    made->program = program_;
     made->stops = stops_.empty() ? default_stops(nullptr, pattern_.kind) : stops_;
     if (pattern_.kind != Kind::Average && !is_discrete(pattern_.kind))
         std::stable_sort(made->stops.begin(), made->stops.end(),

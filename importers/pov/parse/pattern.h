@@ -6,7 +6,7 @@
 
 namespace ovc::pov {
 
-/// What a pattern is for. Normals have no maps or lists here.
+/// What a pattern is for.
 enum class MapOf { Pigments, Textures, Normals };
 
 /// Reads a map of colors, pigments or textures from its { on.
@@ -39,7 +39,17 @@ private:
     bool take_wave(const Token& token);
     void take_warp();
     void parse_list();
+    void parse_object_list();
     void parse_arguments(const Token& token);
+    void take_function(const Token& token, const Function& function);
+    void take_pigment_pattern();
+    void parse_slope();
+    void add_altitude(const dvec3& altitude, double low, double high);
+    void parse_fractal(const Token& token);
+    void take_density_file(const Token& word);
+    bool take_fractal_part();
+    bool take_own_part();
+    void take_black_hole(const Token& word);
     void add_step(TextureStep step);
     void choose(Pattern::Kind kind, Pattern::Wave wave);
     void refuse(const Token& token);
@@ -52,6 +62,7 @@ private:
     bool changed_ = false;
     std::optional<double> agate_turb_;
     Pattern pattern_;
+    ProgramPtr program_; // of Pattern::Kind::Function
     std::vector<MapStop> stops_;
 };
 

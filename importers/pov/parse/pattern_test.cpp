@@ -110,13 +110,74 @@ const AskedColor kAskedColors[] = {
     {"spherical sine_wave frequency 3 phase 0.1 scale 2 color_map { [0 rgb x] [1 rgb z] }",
      {-1.7f, 2.25f, 0.55f},
      {0.20611f, 0, 0.79389f}},
+    {"function { pow(Wood_fn(x, y, z).red, 2) } color_map { [0 rgb x] [1 rgb z] }",
+     {0.31f, 0.72f, 0.15f},
+     {0.55644f, 0, 0.44356f}},
+    {"function { pow(Wood_fn(x, y, z).red, 2) } color_map { [0 rgb x] [1 rgb z] }",
+     {-1.7f, 2.25f, 0.55f},
+     {0.84f, 0, 0.16f}},
+    {"function { abs(Turn(x, y, z).y) * 0.3 + Cracks(x, y, z) / 4 } color_map { [0 rgb x] [1 rgb "
+     "z] }",
+     {0.31f, 0.72f, 0.15f},
+     {0.50591f, 0, 0.49409f}},
+    {"function { abs(Turn(x, y, z).y) * 0.3 + Cracks(x, y, z) / 4 } color_map { [0 rgb x] [1 rgb "
+     "z] }",
+     {-1.7f, 2.25f, 0.55f},
+     {0.26453f, 0, 0.73547f}},
+    {"function { Wood_fn(x, y, z).gray } scale 2 color_map { [0 rgb x] [1 rgb z] }",
+     {0.31f, 0.72f, 0.15f},
+     {0.59563f, 0, 0.40437f}},
+    {"function { Wood_fn(x, y, z).gray } scale 2 color_map { [0 rgb x] [1 rgb z] }",
+     {-1.7f, 2.25f, 0.55f},
+     {0.59563f, 0, 0.40437f}},
+    {"pigment_pattern { marble turbulence 0.2 } color_map { [0 rgb x] [1 rgb z] }",
+     {0.31f, 0.72f, 0.15f},
+     {1, 0, 0}},
+    {"pigment_pattern { marble turbulence 0.2 } color_map { [0 rgb x] [1 rgb z] }",
+     {-1.7f, 2.25f, 0.55f},
+     {0.65664f, 0, 0.34336f}},
+    {"crackle form <1, 0, 0> turbulence 0.2 scale 0.5 color_map { [0 rgb x] [1 rgb z] }",
+     {0.31f, 0.72f, 0.15f},
+     {0.19761f, 0, 0.80239f}},
+    {"crackle form <1, 0, 0> turbulence 0.2 scale 0.5 color_map { [0 rgb x] [1 rgb z] }",
+     {-1.7f, 2.25f, 0.55f},
+     {0.33783f, 0, 0.66217f}},
+    {"julia <0.353, 0.288>, 20 interior 1, 1 scale 2 color_map { [0 rgb x] [1 rgb z] }",
+     {0.31f, 0.72f, 0.15f},
+     {0.60805f, 0, 0.39195f}},
+    {"julia <0.353, 0.288>, 20 interior 1, 1 scale 2 color_map { [0 rgb x] [1 rgb z] }",
+     {-1.7f, 2.25f, 0.55f},
+     {0.95f, 0, 0.05f}},
+    {"triangular rgb x, rgb z scale 0.4", {0.31f, 0.72f, 0.15f}, {1, 0, 0}},
+    {"triangular rgb x, rgb z scale 0.4", {-1.7f, 2.25f, 0.55f}, {0, 0, 1}},
+    {"square rgb x, rgb z scale 0.4", {0.31f, 0.72f, 0.15f}, {1, 0, 0}},
+    {"square rgb x, rgb z scale 0.4", {-1.7f, 2.25f, 0.55f}, {0, 0, 1}},
+    {"gradient x warp { black_hole <0, 1, 0>, 3 strength 0.5 } color_map { [0 rgb x] [1 rgb z] }",
+     {0.31f, 0.72f, 0.15f},
+     {0.57747f, 0, 0.42253f}},
+    {"gradient x warp { black_hole <0, 1, 0>, 3 strength 0.5 } color_map { [0 rgb x] [1 rgb z] }",
+     {-1.7f, 2.25f, 0.55f},
+     {0.7634f, 0, 0.2366f}},
+    {"function { select(x, min(y, 0.7, z), 0, max(x, y) / 2) } color_map { [0 rgb x] [1 rgb z] }",
+     {0.31f, 0.72f, 0.15f},
+     {0.64f, 0, 0.36f}},
+    {"function { select(x, min(y, 0.7, z), 0, max(x, y) / 2) } color_map { [0 rgb x] [1 rgb z] }",
+     {-1.7f, 2.25f, 0.55f},
+     {0.45f, 0, 0.55f}},
 };
+
+/// Functions that the pigments call.
+const char* const kFunctions =
+    "#declare Wood_fn = function { pigment { wood turbulence 0.1 scale 0.3 } }\n"
+    "#declare Turn = function { transform { rotate 30*z scale 2 } }\n"
+    "#declare Cracks = function { pattern { crackle scale 0.4 } }\n";
 
 } // namespace
 
 TEST(PovPattern, HasTheColorsThatPovrayPrints) {
     for (const AskedColor& asked : kAskedColors) {
-        const Scene scene = textured_box("pigment { " + std::string(asked.pigment) + " }");
+        const Scene scene = textured_scene(
+            kFunctions + ("box { -1, 1 pigment { " + std::string(asked.pigment) + " } }"));
         const TransparentColor color = box_color(scene, dvec3(asked.at));
         for (int i = 0; i < 3; ++i)
             EXPECT_NEAR(color.rgb[i], asked.rgb[i], 2e-4) << asked.pigment << " " << i;
@@ -192,6 +253,57 @@ TEST(PovNormal, TiltsNormals) {
     EXPECT_EQ(box_material(named).bump->kind, Bump::Kind::Noise);
     EXPECT_EQ(box_material(named).bump->amount, 0.7);
     EXPECT_TRUE(scene.omissions.empty());
+}
+
+TEST(PovNormal, HasMapsOfNormals) {
+    const Scene scene = textured_box("normal { gradient x normal_map { [0.3 bumps 0.4 scale 2] "
+                                     "[0.7 onion 0.2 slope_map { [0 <0, 1>] [1 <1, 0>] }] } "
+                                     "scale 3 }");
+    const Material& material = box_material(scene);
+    ASSERT_TRUE(material.bump);
+    EXPECT_EQ(material.bump->kind, Bump::Kind::Mix);
+    ASSERT_EQ(material.bump->parts.size(), 2u);
+    const Bump& noise = scene.bumps.at(material.bump->parts[0]);
+    EXPECT_EQ(noise.kind, Bump::Kind::Noise);
+    EXPECT_EQ(noise.amount, 0.4);
+    EXPECT_EQ(noise.pattern.at({6, 12, -6}), dvec3(1, 2, -1)) << "both scales";
+    const Bump& height = scene.bumps.at(material.bump->parts[1]);
+    ASSERT_EQ(height.profile.size(), 2u);
+    EXPECT_EQ(height.profile[1].height, 1);
+    EXPECT_EQ(height.profile[0].slope, 1);
+}
+
+TEST(PovTexture, HasTwoSidesAndAnInside) {
+    const Scene scene =
+        textured_box("texture { pigment { rgbf 1 } } interior_texture { pigment { rgb x } } "
+                     "interior { fade_distance 2 fade_power 1 fade_color rgb y }");
+    const Material& outer = box_material(scene);
+    ASSERT_NE(outer.inside, kNone);
+    EXPECT_EQ(scene.materials.at(outer.inside).color, vec3(1, 0, 0));
+    ASSERT_TRUE(outer.absorption);
+    EXPECT_EQ(*outer.absorption, (Absorption{2, 1, vec3(0, 1, 0)}));
+}
+
+/// povray 3.7.0.10 draws an ambient of rgbf <0.8, 0.4, 0.3, 1> at 0.2 of its color without a
+/// version, and not at all with 3.7.
+TEST(PovTexture, OldFiltersHideByTheirBrightestComponent) {
+    for (const auto& [version, expected] : {std::pair{"3.6", 0.2f}, {"3.7", 0.0f}}) {
+        const Scene scene = textured_scene(
+            "#version " + std::string(version) +
+            "; box { -1, 1 pigment { rgbf <0.8, 0.4, 0.3, 1> } finish { ambient 1 } }");
+        EXPECT_NEAR(box_material(scene).finish->ambient.x, expected, 1e-6) << version;
+        EXPECT_EQ(scene.background.tints, expected == 0) << version;
+    }
+}
+
+TEST(PovSky, HasFog) {
+    const Scene scene = textured_scene("#declare F = fog { distance 5 rgbt <1, 0, 0, 0.5> }\n"
+                                       "fog { F } fog { fog_type 2 fog_alt 2 fog_offset 1 up z "
+                                       "distance 3 rgb 1 } box { 0, 1 }");
+    ASSERT_EQ(scene.background.fogs.size(), 2u);
+    EXPECT_EQ(scene.background.fogs[0].distance, 5);
+    EXPECT_EQ(scene.background.fogs[0].color.transmit, 0.5f);
+    EXPECT_EQ(scene.background.fogs[1], (Fog{{vec3(1)}, 3, 2, 1, {0, 0, 1}}));
 }
 
 TEST(PovSky, HasPatterns) {

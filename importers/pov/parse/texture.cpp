@@ -66,7 +66,9 @@ bool parse_finish_part(Reader& reader, Surface& surface) {
         finish.diffuse = parse_share(reader);
         if (reader.take(','))
             parse_float(reader);
-    } else if (reader.take("brilliance"))
+    } else if (reader.take("crand"))
+        finish.crand = float(parse_float(reader));
+    else if (reader.take("brilliance"))
         finish.brilliance = float(parse_float(reader));
     else if (reader.take("phong"))
         finish.phong = parse_share(reader);
@@ -180,7 +182,7 @@ Surface parse_finish(Reader& reader, const Surface& base) {
         if (const auto named_surface = take_named_if<Surface>(reader))
             surface = *named_surface;
         else if (!parse_finish_part(reader, surface)) {
-            const Token token = reader.next(); // crand, irid and the like
+            const Token token = reader.next(); // irid and the like
             if (!is_word(token))
                 reader.fail(token.place,
                             fmt::format("found {}, expected a part of a finish", found(token)));
@@ -200,6 +202,12 @@ Interior parse_interior(Reader& reader, const Interior& base) {
             interior = *named_interior;
         else if (reader.take("ior"))
             interior.ior = parse_float(reader);
+        else if (reader.take("fade_distance"))
+            interior.absorption.distance = float(parse_float(reader));
+        else if (reader.take("fade_power"))
+            interior.absorption.power = float(parse_float(reader));
+        else if (reader.take("fade_color") || reader.take("fade_colour"))
+            interior.absorption.color = parse_color(reader).rgb;
         else {
             const Token token = reader.next();
             if (!is_word(token))
@@ -224,12 +232,11 @@ Material parse_material(Reader& reader) {
                                                 : parse_texture(reader);
         else if (reader.take("interior"))
             material.interior = parse_interior(reader, material.interior.value_or(Interior{}));
-        else if (const Token token = reader.peek(); reader.take("interior_texture")) {
-            Interior inside = material.interior.value_or(Interior{});
-            inside.notes.push_back(left_out(reader, "a material", token));
-            material.interior = inside;
-            skip_braces(reader, "interior_texture");
-        } else if (const auto m = take_transform(reader)) {
+        else if (reader.take("interior_texture"))
+            material.inside = parse_texture(reader);
+        else if (const auto m = take_transform(reader)) {
+            if (material.inside)
+                place(*material.inside, *m);
             if (material.texture)
                 place(*material.texture, *m);
         } else

@@ -14,9 +14,12 @@ Normal parse_normal(Reader& reader, const Normal& base);
 Surface parse_finish(Reader& reader, const Surface& base);
 Interior parse_interior(Reader& reader, const Interior& base);
 Material parse_material(Reader& reader);
-/// Reads the parts of a pigment or texture up to `end`, which stays.
+/// Reads the parts of a pigment, texture or normal up to `end`, which stays.
 Pigment parse_pigment_parts(Reader& reader, Pigment pigment, char end);
 Texture parse_texture_parts(Reader& reader, Texture texture, char end);
+Normal parse_normal_parts(Reader& reader, const Normal& base, char end);
+/// Reads the { … } of a slope_map.
+std::vector<SlopeStop> parse_slope_map(Reader& reader);
 
 /// Returns `upper`, with its layers, on top of `lower`.
 Texture layered(const Texture& upper, const Texture& lower);

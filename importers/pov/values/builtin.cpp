@@ -21,50 +21,6 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-double truncated(double x) {
-    return std::trunc(x);
-}
-
-uint64_t bits(double x) {
-    return uint64_t(int64_t(std::clamp(x, -9e15, 9e15)));
-}
-
-using Args = const double*;
-const std::unordered_map<std::string_view, FloatFunction> kFloatFunctions = {
-    {"abs", {1, [](Args a) { return std::abs(a[0]); }}},
-    {"acos", {1, [](Args a) { return std::acos(std::clamp(a[0], -1.0, 1.0)); }}},
-    {"acosh", {1, [](Args a) { return std::acosh(a[0]); }}},
-    {"asin", {1, [](Args a) { return std::asin(std::clamp(a[0], -1.0, 1.0)); }}},
-    {"asinh", {1, [](Args a) { return std::asinh(a[0]); }}},
-    {"atan", {1, [](Args a) { return std::atan(a[0]); }}},
-    {"atan2", {2, [](Args a) { return std::atan2(a[0], a[1]); }}},
-    {"atanh", {1, [](Args a) { return std::atanh(a[0]); }}},
-    {"bitwise_and", {2, [](Args a) { return double(bits(a[0]) & bits(a[1])); }}},
-    {"bitwise_or", {2, [](Args a) { return double(bits(a[0]) | bits(a[1])); }}},
-    {"bitwise_xor", {2, [](Args a) { return double(bits(a[0]) ^ bits(a[1])); }}},
-    {"ceil", {1, [](Args a) { return std::ceil(a[0]); }}},
-    {"cos", {1, [](Args a) { return std::cos(a[0]); }}},
-    {"cosh", {1, [](Args a) { return std::cosh(a[0]); }}},
-    {"degrees", {1, [](Args a) { return a[0] / kDegree; }}},
-    {"div", {2, [](Args a) { return truncated(a[0] / a[1]); }}},
-    {"exp", {1, [](Args a) { return std::exp(a[0]); }}},
-    {"floor", {1, [](Args a) { return std::floor(a[0]); }}},
-    {"int", {1, [](Args a) { return truncated(a[0]); }}},
-    {"ln", {1, [](Args a) { return std::log(a[0]); }}},
-    {"log", {1, [](Args a) { return std::log10(a[0]); }}},
-    {"max", {-1, [](Args a) { return std::max(a[0], a[1]); }}},
-    {"min", {-1, [](Args a) { return std::min(a[0], a[1]); }}},
-    {"mod", {2, [](Args a) { return std::fmod(a[0], a[1]); }}},
-    {"pow", {2, [](Args a) { return std::pow(a[0], a[1]); }}},
-    {"pwr", {2, [](Args a) { return std::pow(a[0], a[1]); }}},
-    {"radians", {1, [](Args a) { return a[0] * kDegree; }}},
-    {"sin", {1, [](Args a) { return std::sin(a[0]); }}},
-    {"sinh", {1, [](Args a) { return std::sinh(a[0]); }}},
-    {"sqr", {1, [](Args a) { return a[0] * a[0]; }}},
-    {"sqrt", {1, [](Args a) { return std::sqrt(a[0]); }}},
-    {"tan", {1, [](Args a) { return std::tan(a[0]); }}},
-    {"tanh", {1, [](Args a) { return std::tanh(a[0]); }}}};
-
 Number call_float_function(Reader& reader, const Token& token) {
     assert(find_float_function(token.name->text));
     const FloatFunction& function = *find_float_function(token.name->text);
@@ -433,8 +389,11 @@ const std::unordered_map<std::string_view, TextFunction> kTextFunctions = {
 } // namespace
 
 const FloatFunction* find_float_function(std::string_view word) {
-    const auto at = kFloatFunctions.find(word);
-    return at == kFloatFunctions.end() ? nullptr : &at->second;
+    const std::span<const FloatFunction> all = float_functions();
+    const auto at = std::lower_bound(
+        all.begin(), all.end(), word,
+        [](const FloatFunction& function, std::string_view name) { return function.name < name; });
+    return at == all.end() || at->name != word ? nullptr : &*at;
 }
 
 Builtin find_builtin(std::string_view word) {

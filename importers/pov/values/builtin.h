@@ -2,6 +2,7 @@
 // The functions and constants of the scene language.
 #pragma once
 
+#include "core/texture/formula.h"
 #include "importers/pov/values/expression.h"
 
 namespace ovc::pov {
@@ -11,12 +12,8 @@ namespace ovc::pov {
 using Builtin = Number (*)(Reader&, const Token&);
 Builtin find_builtin(std::string_view word);
 
-/// A function of floats that a function { } may call too.
-struct FloatFunction {
-    int count; // of arguments; -1: any number, with which it is called two at a time
-    double (*call)(const double* arguments);
-};
-/// Returns null where the word is no such function.
+/// Finds a function of floats, which a function { } may call too. Returns null where the word is no
+/// such function.
 const FloatFunction* find_float_function(std::string_view word);
 
 /// Returns the function that reads the rest of `concat("a", "b")` after the word, or null where the

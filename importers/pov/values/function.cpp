@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Turns formulas into trees of closures.
+// Turns formulas into programs.
 #include "importers/pov/values/function.h"
 
 #include "core/texture/pattern.h"
@@ -7,7 +7,6 @@
 #include "importers/pov/parse/texture.h"
 #include "importers/pov/texture_table.h"
 #include "importers/pov/values/builtin.h"
-#include "importers/pov/values/internal.h"
 #include "importers/pov/values/spline.h"
 #include "importers/pov/values/transform.h"
 #include "importers/pov/words/block.h"
@@ -22,29 +21,131 @@ namespace ovc::pov {
 
 namespace {
 
+using StepKind = FormulaStep::Kind;
+
+/// Returns a program of the transform's component at a point.
+ProgramPtr transform_program(const dmat4& transform, size_t component) {
+    ProgramBuilder program;
+    program.constant(transform[3][int(component)]);
+    for (int i = 0; i < 3; ++i) {
+        program.add(StepKind::Argument, uint32_t(i));
+        program.constant(component < 3 ? transform[i][int(component)] : 0);
+        program.add(StepKind::Multiply);
+        program.add(StepKind::Add);
+    }
+    return program.take();
+}
+
+/// Adds the cubic through four values at first + width x {0, 1/3, 2/3, 1}.
+void add_cubic(ProgramBuilder& program, double first, double width,
+               const std::array<double, 4>& v) {
+    // Coefficients of powers of t = 3 (clock - first) / width, by Newton's divided differences.
+    const double d1 = v[1] - v[0], d2 = (v[2] - 2 * v[1] + v[0]) / 2,
+                 d3 = (v[3] - 3 * v[2] + 3 * v[1] - v[0]) / 6;
+    const double powers[] = {d3, d2 - 3 * d3, d1 - d2 + 2 * d3, v[0]};
+    program.constant(powers[0]);
+    for (int i = 1; i < 4; ++i) {
+        program.add(StepKind::Argument);
+        program.constant(first);
+        program.add(StepKind::Subtract);
+        program.constant(3 / width);
+        program.add(StepKind::Multiply);
+        program.add(StepKind::Multiply);
+        program.constant(powers[i]);
+        program.add(StepKind::Add);
+    }
+}
+
+/// Returns a program of the spline's component at a clock: a cubic for each piece.
+ProgramPtr spline_program(const Spline& spline, size_t component) {
+    ProgramBuilder program;
+    const auto value = [&](double clock) { return at(spline, clock).v[component]; };
+    // select(clock - last, select(… select(clock - first, before, piece) …, piece), piece)
+    for (auto point = spline.points.rbegin(); point != spline.points.rend(); ++point) {
+        program.add(StepKind::Argument);
+        program.constant(point->first);
+        program.add(StepKind::Subtract);
+    }
+    program.constant(value(spline.points.begin()->first));
+    for (auto point = spline.points.begin(); point != spline.points.end(); ++point) {
+        const double first = point->first;
+        const auto next = std::next(point);
+        if (next == spline.points.end()) {
+            program.constant(value(first));
+        } else {
+            const double width = next->first - first;
+            add_cubic(program, first, width,
+                      {value(first), value(first + width / 3), value(first + width * 2 / 3),
+                       value(next->first)});
+        }
+        program.add(StepKind::Select, 0, 3);
+    }
+    return program.take();
+}
+
+/// Turns a formula into steps, an operation behind its operands.
 class FormulaParser {
 public:
     FormulaParser(Reader& reader, std::vector<std::string> parameters)
         : reader_(reader), parameters_(std::move(parameters)) {}
 
-    /// Returns an upper bound on how deep closures call each other, with those of called functions.
+    /// Returns an upper bound on how deep operations lie in each other, with those of functions
+    /// that are called.
     uint32_t depth() const { return operations_ + called_; }
 
-    Formula whole() {
-        Formula left = comparison();
-        for (;;) {
-            if (reader_.take('&'))
-                left = both(left, comparison(), [](double a, double b) { return double(a && b); });
-            else if (reader_.take('|'))
-                left = both(left, comparison(), [](double a, double b) { return double(a || b); });
-            else
-                return left;
-        }
+    ProgramPtr program() {
+        whole();
+        const Place place = reader_.place();
+        ProgramPtr made = program_.take();
+        if (!made)
+            reader_.fail(place, "found a function that takes more than a million steps");
+        return made;
     }
 
 private:
-    /// Calling a formula, and destroying it, takes as many stack frames as closures are nested,
-    /// which is at most one for each operation.
+    struct Operator {
+        char sign;
+        StepKind kind;
+    };
+
+    /// Reads `operand sign operand sign operand …`, from left to right.
+    template <size_t N, class Operand>
+    void chain(const Operator (&operators)[N], const Operand& operand) {
+        operand();
+        for (;;) {
+            const auto found = std::find_if(
+                std::begin(operators), std::end(operators),
+                [&](const Operator& candidate) { return reader_.take(candidate.sign); });
+            if (found == std::end(operators))
+                return;
+            operand();
+            count_operation();
+            program_.add(found->kind);
+        }
+    }
+
+    void whole() {
+        static constexpr Operator kSigns[] = {{'&', StepKind::And}, {'|', StepKind::Or}};
+        chain(kSigns, [&] { comparison(); });
+    }
+
+    void comparison() {
+        static constexpr Operator kSigns[] = {
+            {'<', StepKind::Less},           {'>', StepKind::Greater}, {'l', StepKind::LessOrEqual},
+            {'g', StepKind::GreaterOrEqual}, {'=', StepKind::Equal},   {'n', StepKind::NotEqual}};
+        chain(kSigns, [&] { sum(); });
+    }
+
+    void sum() {
+        static constexpr Operator kSigns[] = {{'+', StepKind::Add}, {'-', StepKind::Subtract}};
+        chain(kSigns, [&] { product(); });
+    }
+
+    void product() {
+        static constexpr Operator kSigns[] = {{'*', StepKind::Multiply}, {'/', StepKind::Divide}};
+        chain(kSigns, [&] { operand(); });
+    }
+
     void count_operation() {
         ++operations_;
         if (depth() > reader_.limits.operations)
@@ -54,115 +155,48 @@ private:
                                      reader_.limits.operations));
     }
 
-    template <class Op>
-    Formula both(Formula a, Formula b, Op op) {
-        count_operation();
-        return [a = std::move(a), b = std::move(b), op](std::span<const double> x) {
-            return op(a(x), b(x));
-        };
-    }
-
-    Formula comparison() {
-        Formula left = sum();
-        for (;;) {
-            if (reader_.take('<'))
-                left = both(left, sum(), [](double a, double b) { return double(a < b); });
-            else if (reader_.take('>'))
-                left = both(left, sum(), [](double a, double b) { return double(a > b); });
-            else if (reader_.take('l'))
-                left = both(left, sum(), [](double a, double b) { return double(a <= b); });
-            else if (reader_.take('g'))
-                left = both(left, sum(), [](double a, double b) { return double(a >= b); });
-            else if (reader_.take('='))
-                left = both(left, sum(), [](double a, double b) { return double(a == b); });
-            else if (reader_.take('n'))
-                left = both(left, sum(), [](double a, double b) { return double(a != b); });
-            else
-                return left;
-        }
-    }
-
-    Formula sum() {
-        Formula left = product();
-        for (;;) {
-            if (reader_.take('+'))
-                left = both(left, product(), [](double a, double b) { return a + b; });
-            else if (reader_.take('-'))
-                left = both(left, product(), [](double a, double b) { return a - b; });
-            else
-                return left;
-        }
-    }
-
-    Formula product() {
-        Formula left = operand();
-        for (;;) {
-            if (reader_.take('*'))
-                left = both(left, operand(), [](double a, double b) { return a * b; });
-            else if (reader_.take('/'))
-                left = both(left, operand(), [](double a, double b) { return a / b; });
-            else
-                return left;
-        }
-    }
-
-    Formula operand() {
+    void operand() {
         const Deeper deeper(reader_);
         count_operation();
         if (reader_.take('-')) {
-            Formula inside = operand();
-            return [inside](std::span<const double> x) { return -inside(x); };
-        }
-        if (reader_.take('+'))
-            return operand();
-        if (reader_.take('!')) {
-            Formula inside = operand();
-            return [inside](std::span<const double> x) { return double(inside(x) == 0); };
-        }
-        if (reader_.take('(')) {
-            Formula inside = whole();
+            operand();
+            program_.add(StepKind::Negate);
+        } else if (reader_.take('+')) {
+            operand();
+        } else if (reader_.take('!')) {
+            operand();
+            program_.add(StepKind::Not);
+        } else if (reader_.take('(')) {
+            whole();
             reader_.expect(')', "a formula");
-            return inside;
-        }
-        const Token token = reader_.next();
-        if (token.kind == TokenKind::Name)
-            return name(token);
-        reader_.put_back(token);
-        return constant(parse_number_operand());
-    }
-
-    static Formula constant(double value) {
-        return [value](std::span<const double>) { return value; };
-    }
-
-    double parse_number_operand() {
-        const Token token = reader_.next();
-        if (token.kind != TokenKind::Number)
+        } else if (const Token token = reader_.next(); token.kind == TokenKind::Name) {
+            name(token);
+        } else if (token.kind == TokenKind::Number) {
+            program_.constant(token.number);
+        } else
             reader_.fail(token.place,
                          fmt::format("found {} in a function, expected a formula", found(token)));
-        return token.number;
     }
 
-    Formula name(const Token& token) {
+    void name(const Token& token) {
         const std::string& text = token.name->text;
         const auto parameter = std::find(parameters_.begin(), parameters_.end(), text);
         if (parameter != parameters_.end()) {
-            const size_t i = size_t(parameter - parameters_.begin());
-            return [i](std::span<const double> x) { return i < x.size() ? x[i] : 0; };
-        }
-        if (const FloatFunction* function = find_float_function(text))
-            return call_builtin(token, *function);
-        if (text == "select")
-            return choice(token);
-        if (const auto* function = named<Function>(reader_, token))
-            return call_user(token, *function);
-        if (find_builtin(text) || named<Number>(reader_, token) || named<Array>(reader_, token)) {
+            program_.add(StepKind::Argument, uint32_t(parameter - parameters_.begin()));
+        } else if (const FloatFunction* function = find_float_function(text)) {
+            call_builtin(token, *function);
+        } else if (text == "select") {
+            choice(token);
+        } else if (const auto* user_function = named<Function>(reader_, token)) {
+            call_user(token, *user_function);
+        } else if (find_builtin(text) || named<Number>(reader_, token) ||
+                   named<Array>(reader_, token)) {
             // A constant: pi, a variable, an array's item or a component such as V.x.
             reader_.put_back(token);
-            return constant(parse_constant());
-        }
-        reader_.fail(token.place,
-                     fmt::format("found {} in a function, expected a formula", found(token)));
+            program_.constant(parse_constant());
+        } else
+            reader_.fail(token.place,
+                         fmt::format("found {} in a function, expected a formula", found(token)));
     }
 
     double parse_constant() {
@@ -190,92 +224,92 @@ private:
                                              found(part)));
     }
 
-    std::vector<Formula> arguments(const Token& token) {
-        std::vector<Formula> formulas;
+    /// Reads arguments, whose values are then on the stack. Calls each() behind each but the first.
+    template <class Each>
+    uint32_t arguments(const Token& token, const Each& each) {
+        uint32_t count = 0;
         reader_.expect('(', token.name->text);
         while (!reader_.take(')')) {
-            formulas.push_back(whole());
+            whole();
+            if (count++ > 0)
+                each();
             reader_.take_comma();
         }
-        return formulas;
+        return count;
+    }
+    uint32_t arguments(const Token& token) {
+        return arguments(token, [] {});
     }
 
-    Formula call_builtin(const Token& token, const FloatFunction& function) {
-        const std::vector<Formula> given = arguments(token);
-        const bool any = function.count < 0;
-        if (given.empty() || (!any && given.size() != size_t(function.count)) || given.size() > 8)
+    void call_builtin(const Token& token, const FloatFunction& function) {
+        const auto number = uint32_t(&function - float_functions().data());
+        const bool any = function.count < 0; // min and max take two arguments at a time
+        const uint32_t given = arguments(token, [&] {
+            if (any)
+                program_.add(StepKind::Builtin, number);
+        });
+        if (given == 0 || (!any && given != uint32_t(function.count)))
+            reader_.fail(token.place, fmt::format("found {} arguments to {}, expected {}", given,
+                                                  token.name->text, any ? 2 : function.count));
+        if (!any)
+            program_.add(StepKind::Builtin, number);
+    }
+
+    void choice(const Token& token) {
+        const uint32_t given = arguments(token);
+        if (given != 3 && given != 4)
             reader_.fail(token.place,
-                         fmt::format("found {} arguments to {}, expected {}", given.size(),
-                                     token.name->text, any ? 2 : function.count));
-        if (any) // min and max take two arguments at a time
-            return [given, call = function.call](std::span<const double> x) {
-                double pair[2] = {given[0](x), 0};
-                for (size_t i = 1; i < given.size(); ++i) {
-                    pair[1] = given[i](x);
-                    pair[0] = call(pair);
-                }
-                return pair[0];
-            };
-        return [given, call = function.call](std::span<const double> x) {
-            double values[8];
-            for (size_t i = 0; i < given.size(); ++i)
-                values[i] = given[i](x);
-            return call(values);
-        };
+                         fmt::format("found {} arguments to select, expected 3 or 4", given));
+        program_.add(StepKind::Select, 0, given);
     }
 
-    Formula choice(const Token& token) {
-        const std::vector<Formula> given = arguments(token);
-        if (given.size() != 3 && given.size() != 4)
-            reader_.fail(token.place, fmt::format("found {} arguments to select, expected 3 or 4",
-                                                  given.size()));
-        return [given](std::span<const double> x) {
-            const double sign = given[0](x);
-            return sign < 0 ? given[1](x) : sign == 0 ? given[2](x) : given.back()(x);
-        };
-    }
-
-    Formula call_user(const Token& token, Function function) {
-        const std::vector<Formula> given = arguments(token);
+    void call_user(const Token& token, const Function function) {
+        if (!function.refused.empty())
+            reader_.fail(token.place, fmt::format("{} cannot be called: {}",
+                                                  ovc::quoted(token.name->text), function.refused));
+        uint32_t given = arguments(token);
         called_ = std::max(called_, function.depth);
         count_operation();
+        if (function.formula) {
+            program_.call(function.program, given);
+            return;
+        }
+        for (; given < 3 && !function.spline; ++given)
+            program_.constant(0);
         if (function.color)
-            return call_color(given, function.color);
-        return [given, function = std::move(function), token,
-                this_reader = &reader_](std::span<const double> x) {
-            std::vector<double> values;
-            for (const Formula& formula : given)
-                values.push_back(formula(x));
-            return pov::call(*this_reader, token, function, values).v[0];
-        };
+            call_color(given, function);
+        else if (function.spline)
+            call_component(given, [&](size_t i) { return spline_program(*function.spline, i); });
+        else
+            call_component(given,
+                           [&](size_t i) { return transform_program(*function.transform, i); });
     }
 
     /// Reads the component of a pigment's color, such as .red, behind the pigment's point.
-    Formula call_color(std::vector<Formula> given, ColorFormula color) {
+    void call_color(uint32_t given, const Function& function) {
+        if (given != 3)
+            reader_.fail(reader_.place(), fmt::format("found {} arguments to a pigment's function, "
+                                                      "expected 3",
+                                                      given));
         reader_.expect('.', "the color of a pigment");
-        if (reader_.take("gray") || reader_.take("grey"))
-            return [given = std::move(given), color = std::move(color)](std::span<const double> x) {
-                const vec3 rgb = color(point(given, x)).rgb;
-                return double(0.297f * rgb.x + 0.589f * rgb.y + 0.114f * rgb.z);
-            };
-        const size_t component = parse_component();
-        return [given = std::move(given), color = std::move(color),
-                component](std::span<const double> x) {
-            const Color c = color(point(given, x));
-            const float all[5] = {c.rgb.x, c.rgb.y, c.rgb.z, c.filter, c.transmit};
-            return double(all[component]);
-        };
+        const bool is_gray = reader_.take("gray") || reader_.take("grey");
+        program_.texture(StepKind::Color, function.program,
+                         is_gray ? 5 : uint32_t(parse_component()));
     }
 
-    static dvec3 point(const std::vector<Formula>& given, std::span<const double> x) {
-        dvec3 at(0);
-        for (size_t i = 0; i < 3 && i < given.size(); ++i)
-            at[int(i)] = given[i](x);
-        return at;
+    /// Reads the component of a vector behind the call that gives it; the first without one.
+    template <class ProgramOf>
+    void call_component(uint32_t given, const ProgramOf& program_of) {
+        const size_t component = reader_.take('.') ? parse_component() : 0;
+        const ProgramPtr program = program_of(component);
+        if (!program)
+            reader_.fail(reader_.place(), "found a spline with too many points for a function");
+        program_.call(program, given);
     }
 
     Reader& reader_;
     const std::vector<std::string> parameters_;
+    ProgramBuilder program_;
     uint32_t operations_ = 0;
     uint32_t called_ = 0; // the depth of the deepest function that it calls
 };
@@ -298,25 +332,32 @@ std::vector<std::string> parse_parameters(Reader& reader) {
 
 } // namespace
 
+/// Makes the function call the program.
+static void set_program(Function& function, ProgramPtr program) {
+    function.program = program;
+    function.formula = [program = std::move(program)](std::span<const double> x) {
+        return (*program)(x);
+    };
+}
+
 /// Reads `internal(N)`, with which functions.inc declares its functions.
 static void parse_internal(Reader& reader, Function& function) {
     reader.next();
     reader.expect('(', "internal");
     const int number = parse_int(reader, 0, 1000, "the number of a function");
     reader.expect(')', "internal");
-    const Internal internal = find_internal(number);
+    const InternalFunction internal = internal_function(uint32_t(number));
     if (!internal.call) {
         function.refused =
             fmt::format("the function is internal({}), which Overcast does not compute", number);
         return;
     }
     function.parameters = size_t(internal.count);
-    assert(function.parameters <= 8);
-    function.formula = [internal](std::span<const double> x) {
-        std::array<double, 8> all{};
-        std::copy_n(x.begin(), std::min(x.size(), all.size()), all.begin());
-        return internal.call(all);
-    };
+    ProgramBuilder program;
+    for (uint32_t i = 0; i < uint32_t(internal.count); ++i)
+        program.add(StepKind::Argument, i);
+    program.add(StepKind::Internal, uint32_t(number), uint32_t(internal.count));
+    set_program(function, program.take());
 }
 
 /// Reads the { … } of `pattern` or `pigment`, whose word is `what`.
@@ -331,17 +372,19 @@ static void parse_pattern_function(Reader& reader, const Token& what, Function& 
             fmt::format("the function is a {} that Overcast does not compute", what.name->text);
         return;
     }
+    const ProgramPtr colors = color_program(pigment);
     if (!is_pattern) {
-        function.color = color_function(pigment);
+        function.program = colors;
+        function.color = [colors](const dvec3& at) {
+            return color_at(colors->textures, uint32_t(colors->textures.size() - 1), at);
+        };
         return;
     }
-    function.formula = [pattern = pigment.pattern,
-                        back = glm::inverse(pigment.placed)](std::span<const double> x) {
-        dvec4 at(0, 0, 0, 1);
-        for (size_t i = 0; i < 3 && i < x.size(); ++i)
-            at[int(i)] = x[i];
-        return evaluate(pattern->pattern, dvec3(back * at)).value;
-    };
+    ProgramBuilder program;
+    for (uint32_t i = 0; i < 3; ++i)
+        program.add(StepKind::Argument, i);
+    program.texture(StepKind::Value, colors);
+    set_program(function, program.take());
 }
 
 Function parse_function(Reader& reader) {
@@ -365,7 +408,7 @@ Function parse_function(Reader& reader) {
         parse_pattern_function(reader, first, function);
     else {
         FormulaParser parser(reader, parameters);
-        function.formula = parser.whole();
+        set_program(function, parser.program());
         function.depth = parser.depth();
     }
     reader.expect('}', "a function");

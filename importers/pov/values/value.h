@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/scene.h"
+#include "importers/pov/values/program.h"
 #include "importers/pov/values/shared_function.h"
 #include "importers/pov/words/data_file.h"
 #include "importers/pov/words/token.h"
@@ -91,7 +92,9 @@ struct Normal {
     Bump::Kind kind = Bump::Kind::Height;
     double amount = 0.5;
     double accuracy = 0.02;
+    std::vector<SlopeStop> profile; // of a slope_map
 };
+using NormalPtr = std::shared_ptr<const Normal>;
 
 struct Texture;
 /// Copies of a texture share the layers below it, which do not change any more.
@@ -114,6 +117,7 @@ struct MapStop {
     double at = 0;
     Pigment pigment;
     TexturePtr texture; // null: none
+    NormalPtr normal;   // of a map or list of normals; else null
 
     const Color& average() const { return texture ? texture->pigment.color : pigment.color; }
 };
@@ -127,23 +131,27 @@ struct ImageMap {
 
 struct PatternMap {
     Pattern pattern;
-    std::vector<MapStop> stops;        // at least one, in ascending order but for Average
-    std::optional<ImageMap> image_map; // instead of both, except for the pattern's steps
+    std::vector<MapStop> stops; // at least one, in ascending order but for Average
+    ProgramPtr program;         // of Pattern::Kind::Function, in place of pattern.formula
+    std::optional<ImageMap> image_map; // instead of all these, except for the pattern's steps
 };
 
 struct Interior {
     double ior = 1;
+    Absorption absorption; // a distance or power of 0: none
     Notes notes;
 };
 
 struct Material {
     std::optional<Texture> texture;
+    std::optional<Texture> inside; // of the inner sides
     std::optional<Interior> interior;
 };
 
-/// A color_map, pigment_map or texture_map.
+/// A color_map, pigment_map, texture_map or normal_map, or a slope_map.
 struct ColorMap {
     std::vector<MapStop> stops;
+    std::vector<SlopeStop> slopes;
 };
 
 /// The pigments of a sky_sphere, the lowest first.
@@ -174,6 +182,7 @@ struct CameraValue {
     ImageWindow::Bend bend = ImageWindow::Bend::Flat;
     double vertical_angle = 0;
     double angle = 0; // of the field of view, in degrees; 0 where the scene gives none
+    Normal normal;    // tilts rays
 };
 
 struct Array {
@@ -198,9 +207,8 @@ struct Spline {
     std::map<double, Number> points;
 };
 
-/// A formula ready to be computed. It may throw ParseError where it calls a function that Overcast
-/// does not compute. Arguments that are missing count as 0.
-using Formula = SharedFunction<double(std::span<const double>)>;
+/// A formula ready to be computed. Arguments that are missing count as 0.
+using NumberFormula = SharedFunction<double(std::span<const double>)>;
 
 /// The color of a pigment at a point.
 using ColorFormula = SharedFunction<Color(const dvec3&)>;
@@ -208,8 +216,10 @@ using ColorFormula = SharedFunction<Color(const dvec3&)>;
 /// Exactly one of formula, color, transform, spline and refused is set.
 struct Function {
     size_t parameters = 3;
-    Formula formula;
+    NumberFormula formula;
     ColorFormula color;
+    /// Of `formula`, or with the textures of `color`, the last of which is the pigment.
+    ProgramPtr program;
     std::optional<dmat4> transform;
     std::optional<Spline> spline;
     uint32_t depth = 1;  // of nested closures
@@ -219,8 +229,8 @@ struct Function {
 
 /// The value of a variable or of an array's item, which owns it. Macros belong to the reader.
 struct Value : std::variant<std::monostate, Number, std::string, ObjectPtr, Texture, Pigment,
-                            Normal, Surface, Interior, Material, ColorMap, SkySphere, dmat4, Array,
-                            const Macro*, Function, Spline, CameraValue, DataFile, Opaque> {
+                            Normal, Surface, Interior, Material, ColorMap, SkySphere, Fog, dmat4,
+                            Array, const Macro*, Function, Spline, CameraValue, DataFile, Opaque> {
     using variant::variant;
     using variant::operator=;
 };
