@@ -322,7 +322,7 @@ struct Scene {
     std::vector<Material> materials;
     std::vector<Texture> textures; // a texture's stops name textures before it
     std::vector<PictureFile> pictures;
-    std::vector<Bump> bumps;       // parts of those of materials, each made of ones before it
+    std::vector<Bump> bumps; // parts of those of materials, each made of ones before it
     std::vector<Cutout> cutouts;
     std::vector<Light> lights;
     bool moves = false;                // something in it goes by the Moment

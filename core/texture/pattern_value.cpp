@@ -167,6 +167,11 @@ double angle_of_incidence(const TexturePoint& point) {
     return std::asin(cosine) / std::numbers::pi + 0.5;
 }
 
+double gradient(const Pattern& pattern, const dvec3& at) {
+    const auto& p = pattern.parameters;
+    return glm::dot(at, dvec3(p[0], p[1], p[2]));
+}
+
 /// Two spirals that run against each other.
 double double_spiral(const Pattern& pattern, const dvec3& at) {
     return fraction(triangle_of(spiral(pattern, at)) + triangle_of(std::hypot(at.x, at.y)));
@@ -182,7 +187,6 @@ double quilted_curve(const Pattern& pattern, double t) {
 double continuous_value(std::span<const Texture> textures, const Pattern& pattern,
                         const TexturePoint& point) {
     const dvec3& at = point.at;
-    const std::array<double, 10>& p = pattern.parameters;
     switch (pattern.kind) {
     case Kind::Agate:
         return agate(pattern, at);
@@ -203,11 +207,11 @@ double continuous_value(std::span<const Texture> textures, const Pattern& patter
     case Kind::Density:
         return density(pattern, at);
     case Kind::Fractal:
-        return fractal(p, at);
+        return fractal(pattern.parameters, at);
     case Kind::Function:
         return evaluate(textures, pattern.formula, std::array{at.x, at.y, at.z});
     case Kind::Gradient:
-        return glm::dot(at, dvec3(p[0], p[1], p[2]));
+        return gradient(pattern, at);
     case Kind::Granite:
         return granite(pattern, at);
     case Kind::Leopard:

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Writes a bench's result as JSON: everything that the tables show, and each single time.
 #include "host/bench/bench_text.h"
-#include "host/bench/ratios.h"
+#include "host/bench/ratios/ratios.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

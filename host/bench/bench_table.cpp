@@ -2,7 +2,7 @@
 // Writes a bench's result for people: a table of what was built and one for each workload.
 #include "host/arguments/memory_size.h"
 #include "host/bench/bench_text.h"
-#include "host/bench/ratios.h"
+#include "host/bench/ratios/ratios.h"
 #include "host/terminal/text_table.h"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tests that tables and JSON agree, and that JSON has the keys that docs/benchmarks.md lists.
 #include "host/bench/bench_text.h"
-#include "host/bench/ratios.h"
+#include "host/bench/ratios/ratios.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

@@ -7,9 +7,9 @@
 #pragma once
 
 #include "core/scene.h"
-#include "host/shade/bsdf.h"
 #include "host/shade/integrator.h"
 #include "host/shade/lights/light_sampler.h"
+#include "host/shade/surface/bsdf.h"
 
 #include <cstdint>
 

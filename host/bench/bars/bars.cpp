@@ -2,7 +2,7 @@
 // Computes the bars from results. The numbers promised stand here and in docs/benchmarks.md.
 #include "host/bench/bars/bars.h"
 
-#include "host/bench/ratios.h"
+#include "host/bench/ratios/ratios.h"
 
 #include <fmt/format.h>
 

@@ -3,9 +3,9 @@
 #pragma once
 
 #include "host/bench/bench.h"
-#include "host/bench/paired_ratio.h"
 #include "host/bench/programs/import_cost.h"
 #include "host/bench/programs/programs.h"
+#include "host/bench/ratios/paired_ratio.h"
 
 #include <array>
 #include <optional>

@@ -5,7 +5,7 @@
 
 #include "host/bench/programs/run_program.h"
 #include "host/bench/programs/scratch_folder.h"
-#include "host/bench/ratios.h"
+#include "host/bench/ratios/ratios.h"
 #include "host/scene/scene_source.h"
 #include "host/terminal/terminal_line.h"
 #include "testscenes/catalog.h"

@@ -3,7 +3,7 @@
 #include "host/bench/pictures/picture_text.h"
 
 #include "host/arguments/memory_size.h"
-#include "host/bench/ratios.h"
+#include "host/bench/ratios/ratios.h"
 #include "host/terminal/text_table.h"
 
 #include <fmt/format.h>

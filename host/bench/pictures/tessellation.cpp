@@ -7,7 +7,7 @@
 #include "host/bench/pictures/picture_text.h"
 #include "host/bench/programs/run_program.h"
 #include "host/bench/programs/scratch_folder.h"
-#include "host/bench/ratios.h"
+#include "host/bench/ratios/ratios.h"
 #include "host/camera/camera.h"
 #include "host/output/output.h"
 #include "host/scene/scene_source.h"

@@ -2,7 +2,7 @@
 // Forks a child process, which reads the file and reports the cost through a pipe.
 #include "host/bench/programs/import_cost.h"
 
-#include "host/bench/ratios.h"
+#include "host/bench/ratios/ratios.h"
 #include "host/terminal/process_cost.h"
 #include "importers/importer.h"
 

@@ -5,7 +5,7 @@
 #include "core/system/parallel.h"
 #include "host/arguments/memory_size.h"
 #include "host/bench/programs/run_program.h"
-#include "host/bench/ratios.h"
+#include "host/bench/ratios/ratios.h"
 #include "host/output/output.h"
 #include "host/scene/scene_summary.h"
 #include "host/terminal/text_table.h"

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "core/scene.h"
-#include "host/bench/paired_ratio.h"
+#include "host/bench/ratios/paired_ratio.h"
 #include "host/bench/workload.h"
 
 #include <cstdint>

@@ -57,8 +57,8 @@ static void take_color(const Scene& scene, const Material& material, const Textu
                        SurfacePoint& surface) {
     surface.material = &material;
     if (material.bump)
-        surface.normal = bumped(scene.textures, scene.bumps, *material.bump, point.at, point.normal,
-                                point.view);
+        surface.normal =
+            bumped(scene.textures, scene.bumps, *material.bump, point.at, point.normal, point.view);
     if (material.normal_map)
         tilt_by_map(scene, *material.normal_map, point, surface);
     surface.color = material.color;

@@ -2,8 +2,8 @@
 // Textures on surfaces: where a hit looks them up, how large a part it sees, and what they change.
 #include "host/shade/surface/texture_place.h"
 
-#include "host/shade/bsdf.h"
 #include "host/shade/shade.h"
+#include "host/shade/surface/bsdf.h"
 
 #include <gtest/gtest.h>
 

@@ -131,8 +131,8 @@ struct ImageMap {
 
 struct PatternMap {
     Pattern pattern;
-    std::vector<MapStop> stops; // at least one, in ascending order but for Average
-    ProgramPtr program;         // of Pattern::Kind::Function, in place of pattern.formula
+    std::vector<MapStop> stops;        // at least one, in ascending order but for Average
+    ProgramPtr program;                // of Pattern::Kind::Function, in place of pattern.formula
     std::optional<ImageMap> image_map; // instead of all these, except for the pattern's steps
 };
 

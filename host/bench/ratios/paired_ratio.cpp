@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Divides times turn by turn.
-#include "host/bench/paired_ratio.h"
+#include "host/bench/ratios/paired_ratio.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The four parts of a Bsdf: Lambert below a coat, GGX, mirror and glass.
-#include "host/shade/bsdf.h"
+#include "host/shade/surface/bsdf.h"
 
 #include "core/fresnel.h"
-#include "host/shade/microfacet.h"
+#include "host/shade/surface/microfacet.h"
 
 #include <algorithm>
 #include <cmath>

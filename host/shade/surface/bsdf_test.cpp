@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tests that Bsdf sends on no more light than arrives, both ways alike, and chooses directions by
 // its density; and the values of Fresnel's equations.
-#include "host/shade/bsdf.h"
+#include "host/shade/surface/bsdf.h"
 
 #include "core/fresnel.h"
 #include "host/shade/path_sampler.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/bench/paired_ratio.h"
+#include "host/bench/ratios/paired_ratio.h"
 
 #include <gtest/gtest.h>
 

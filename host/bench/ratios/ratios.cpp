@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Takes medians and divides them.
-#include "host/bench/ratios.h"
+#include "host/bench/ratios/ratios.h"
 
 #include <algorithm>
 #include <cassert>

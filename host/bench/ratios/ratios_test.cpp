@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tests medians, rates, and which of two times is divided by which.
-#include "host/bench/ratios.h"
+#include "host/bench/ratios/ratios.h"
 
 #include <gtest/gtest.h>
 
