@@ -24,6 +24,11 @@ double cycle(double x) {
     return std::sin(2 * std::numbers::pi * x);
 }
 
+double gradient(const Pattern& pattern, const dvec3& at) {
+    const std::array<double, 10>& p = pattern.parameters;
+    return glm::dot(at, dvec3(p[0], p[1], p[2]));
+}
+
 double granite(const Pattern& pattern, const dvec3& at) {
     const bool corrected = pattern.noise == NoiseKind::Corrected;
     double sum = 0, frequency = 1;
@@ -182,7 +187,6 @@ double quilted_curve(const Pattern& pattern, double t) {
 double continuous_value(std::span<const Texture> textures, const Pattern& pattern,
                         const TexturePoint& point) {
     const dvec3& at = point.at;
-    const std::array<double, 10>& p = pattern.parameters;
     switch (pattern.kind) {
     case Kind::Agate:
         return agate(pattern, at);
@@ -203,11 +207,11 @@ double continuous_value(std::span<const Texture> textures, const Pattern& patter
     case Kind::Density:
         return density(pattern, at);
     case Kind::Fractal:
-        return fractal(p, at);
+        return fractal(pattern.parameters, at);
     case Kind::Function:
         return evaluate(textures, pattern.formula, std::array{at.x, at.y, at.z});
     case Kind::Gradient:
-        return glm::dot(at, dvec3(p[0], p[1], p[2]));
+        return gradient(pattern, at);
     case Kind::Granite:
         return granite(pattern, at);
     case Kind::Leopard:
