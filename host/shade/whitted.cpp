@@ -2,7 +2,7 @@
 // At a surface Whitted's integrator adds its own color, asks every light, and may follow two rays.
 #include "host/shade/whitted.h"
 
-#include "host/shade/fog.h"
+#include "host/shade/surface/fog.h"
 
 #include <fmt/format.h>
 

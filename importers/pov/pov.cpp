@@ -131,7 +131,10 @@ private:
 
     void parse_background(Scene& scene) {
         reader_.expect('{', "background");
-        scene.background.horizon = scene.background.zenith = parse_color(reader_).rgb;
+        const Color color = parse_color(reader_);
+        const bool shows_black = reader_.version >= 3.7; // behind what the color lets through
+        scene.background.horizon = scene.background.zenith =
+            (shows_black ? 1 - color.transmit : 1) * color.rgb;
         reader_.expect('}', "background");
     }
 

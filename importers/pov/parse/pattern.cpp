@@ -146,9 +146,9 @@ MapStop parse_entry(Reader& reader, MapOf of, char end) {
         made.normal = std::make_shared<const Normal>(normal);
     };
     if (of == MapOf::Normals && end != 0)
-        take_normal(parse_normal_parts(reader, {}, end));
+        take_normal(parse_normal_parts(reader, reader.defaults.normal, end));
     else if (reader.take("normal"))
-        take_normal(parse_normal(reader, {}));
+        take_normal(parse_normal(reader, reader.defaults.normal));
     else if (of == MapOf::Textures && end != 0)
         take(parse_texture_parts(reader, reader.defaults, end));
     else if (reader.take("texture"))

@@ -296,6 +296,14 @@ TEST(PovTexture, OldFiltersHideByTheirBrightestComponent) {
     }
 }
 
+/// As povray 3.7.0.10 draws them.
+TEST(PovSky, ABackgroundThatLetsLightThroughIsDarker) {
+    const std::string background = "background { rgbft <0.8, 0.6, 0.4, 0.3, 0.5> } box { 0, 1 }";
+    EXPECT_EQ(textured_scene(background).background.zenith, vec3(0.4f, 0.3f, 0.2f));
+    EXPECT_EQ(textured_scene("#version 3.6; " + background).background.zenith,
+              vec3(0.8f, 0.6f, 0.4f));
+}
+
 TEST(PovSky, HasFog) {
     const Scene scene = textured_scene("#declare F = fog { distance 5 rgbt <1, 0, 0, 0.5> }\n"
                                        "fog { F } fog { fog_type 2 fog_alt 2 fog_offset 1 up z "

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // POV-Ray's documentation (section 3.4.3.3, "Fog") says what fog is; that of the ground was found
 // by asking povray for values.
-#include "host/shade/fog.h"
+#include "host/shade/surface/fog.h"
 
 #include <algorithm>
 #include <cmath>

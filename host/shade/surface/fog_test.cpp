@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/shade/fog.h"
+#include "host/shade/surface/fog.h"
 
 #include <gtest/gtest.h>
 
