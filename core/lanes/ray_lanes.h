@@ -5,6 +5,7 @@
 
 #include "core/box.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -13,7 +14,8 @@ namespace ovc {
 /// Eight rays. Arrays are [axis][lane].
 struct RayLanes {
     static constexpr int kCount = 8;
-    static constexpr uint32_t kAll = (1u << kCount) - 1;
+    /// Returns a bit for each of the first `count` lanes.
+    static constexpr uint32_t first(size_t count) { return (1u << count) - 1; }
 
     alignas(64) double org[3][kCount], dir[3][kCount];
     alignas(64) double t_min[kCount], t_max[kCount];

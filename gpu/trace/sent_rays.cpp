@@ -240,7 +240,7 @@ SentRays send(const RayForm& form, std::span<const RayState> states) {
             const RayState& state = states[i + lane];
             some.set(int(lane), state.ray, state.skip, state.asks);
         }
-        sent.put(i, some, (1u << count) - 1);
+        sent.put(i, some, RayLanes::first(count));
     }
     return sent;
 }

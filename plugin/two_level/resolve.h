@@ -24,11 +24,6 @@ namespace ovc {
 
 inline constexpr size_t kRaysPerTask = 256; // in parallel loops over rays that are traced
 
-/// Returns a bit for each of the first `count` lanes.
-inline uint32_t all_lanes(size_t count) {
-    return (1u << count) - 1;
-}
-
 /// Calls body(some, first) for rays by as many as there are lanes; first: the place of the first.
 template <class Body>
 void in_lanes(std::span<const uint32_t> rays, Body&& body) {
@@ -103,7 +98,7 @@ public:
     uint32_t begins(const RayStates& states, std::span<const uint32_t> rays) {
         for (const uint32_t i : rays)
             query_.set_miss(i);
-        const uint32_t all = all_lanes(rays.size());
+        const uint32_t all = RayLanes::first(rays.size());
         const LanesAhead ahead = look_ahead(ahead_, states.rays);
         const uint32_t valid = ahead.valid & all;
         invalid_ += uint64_t(std::popcount(all & ~valid));

@@ -95,7 +95,7 @@ public:
                     t_max = std::min(t_max, at.t_end);
                     states.asks[lane] |= at.key;
                 }
-                resolver_.send(sent, first + from + j, states, some, all_lanes(some.size()));
+                resolver_.send(sent, first + from + j, states, some, RayLanes::first(some.size()));
             });
         });
         return count;
