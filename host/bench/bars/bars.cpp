@@ -40,16 +40,6 @@ const Measurement* find(const BenchResult& r, std::string_view contender,
 
 constexpr std::array<const char*, 3> kRaySets = {"primary", "shadow", "diffuse"};
 
-void set(Bar& bar, const std::optional<PairedRatio>& ratio) {
-    bar.turns = ratio;
-    if (ratio)
-        bar.measured = ratio->median;
-}
-
-/// Returns the seconds of the turns that kernel_seconds() is the median of.
-std::span<const double> kernel_turns(const Measurement& m) {
-    return spread_of(m.kernel_seconds).median > 0 ? m.kernel_seconds : m.seconds;
-}
 std::span<const double> call_turns(const Measurement& m) {
     return m.seconds;
 }
@@ -69,7 +59,7 @@ std::vector<Bar> against(const BenchResult& r, const std::string& what, std::str
                 "times as fast"};
         const Measurement* const ours = find(r, "certified", kRaySets[i]);
         if (const Measurement* const theirs = find(r, peer, kRaySets[i]); ours && theirs)
-            set(bar, paired_ratio(turns(*theirs), turns(*ours)));
+            bar.take(paired_ratio(turns(*theirs), turns(*ours)));
         if (!bar.measured)
             bar.note = fmt::format("{} did not take part", peer);
         bars.push_back(bar);
@@ -106,7 +96,7 @@ Bar certify_bar(const BenchResult& mesh) {
     Bar frame{"frame, certified against fast", Better::Less, 1.25, 1.1, {}, "times as long"};
     const Measurement* certified = find(mesh, "certified", "frame");
     if (const Measurement* fast = find(mesh, "fast", "frame"); certified && fast)
-        set(frame, paired_ratio(certified->seconds, fast->seconds));
+        frame.take(paired_ratio(certified->seconds, fast->seconds));
     return frame;
 }
 
@@ -126,7 +116,7 @@ Bar edges_bar(const BenchResult& mesh) {
         seconds /= double(edges->rays);
     for (double& seconds : under)
         seconds /= double(primary->rays);
-    set(bar, paired_ratio(over, under));
+    bar.take(paired_ratio(over, under));
     return bar;
 }
 
@@ -143,7 +133,7 @@ std::vector<Bar> leaves_bars(const BenchResult& sweep) {
             {},
             fmt::format("times as long, three sets of rays; {} leaves made", entrant.built.leaves)};
         if (sweep.complete)
-            set(bar, paired_ratio(summed_turns(sweep, i), summed_turns(sweep, 0)));
+            bar.take(paired_ratio(summed_turns(sweep, i), summed_turns(sweep, 0)));
         bars.push_back(bar);
     }
     return bars;
@@ -171,7 +161,7 @@ std::vector<Bar> leaves_of_scene_bars(const BenchResult& sweep, const std::strin
             const auto ratio = paired_ratio(kernel_turns(m), kernel_turns(*first));
             if (!ratio || ratio->median <= bar.measured.value_or(0))
                 continue;
-            set(bar, ratio);
+            bar.take(ratio);
             bar.note =
                 fmt::format("times as long, {} rays, the worst of three sets; {} leaves made",
                             sweep.workloads[m.workload], entrant.built.leaves);
@@ -190,7 +180,7 @@ Bar budget_bar(const BenchResult& sweep) {
             "times as long"};
     if (sweep.measurements.size() == 2) {
         const Measurement& part = sweep.measurements[1];
-        set(bar, paired_ratio(part.seconds, sweep.measurements[0].seconds));
+        bar.take(paired_ratio(part.seconds, sweep.measurements[0].seconds));
         bar.note = fmt::format("times as long, {} passes, {:.0f} MB moved in", part.passes,
                                1e-6 * double(part.bytes_in));
     }
@@ -230,7 +220,7 @@ std::vector<Bar> program_bars(const ProgramsResult& programs) {
                 promise.aim,
                 {},
                 "times as fast"};
-        set(bar, times_as_fast(programs, peer));
+        bar.take(times_as_fast(programs, peer));
         if (!bar.measured)
             bar.note = fmt::format("{} is not installed", peer);
         bars.push_back(bar);

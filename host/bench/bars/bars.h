@@ -28,6 +28,12 @@ struct Bar {
     std::string note; // the reason where nothing was measured, else what the figure means
     std::optional<PairedRatio> turns = {}; // where `measured` is its median
 
+    /// Sets the figure to the median of turns, where there are any.
+    void take(const std::optional<PairedRatio>& ratio) {
+        turns = ratio;
+        if (ratio)
+            measured = ratio->median;
+    }
     /// Whether the figure would hold.
     bool passed() const { return measured && holds(*measured); }
     /// Whether turns of the measurement differ by more than the figure lies off the bar.

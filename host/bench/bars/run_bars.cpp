@@ -163,8 +163,8 @@ private:
             {.name = "cpu-float-kdtree", .kind = ContenderKind::FloatKdTree}};
         if (has_embree())
             contenders.push_back(embree("embree-robust", EmbreeMode::Robust));
-        const Result<const BenchResult*> r = bench(job_.mesh, {.size = large_, .edges = true},
-                                                   contenders, kOfShortCalls * job_.repeats);
+        const Result<const BenchResult*> r =
+            bench(job_.mesh, {.size = large_}, contenders, kOfShortCalls * job_.repeats);
         if (!r)
             return r.error();
         add(kernel_bars(**r, "mesh", "embree-robust", kKernel));
@@ -299,9 +299,7 @@ private:
                 const ovc_statistics s = (*backend)->statistics();
                 seconds->push_back(s.seconds_level1 + s.seconds_level2);
             }
-        bar.turns = paired_ratio(ours, theirs);
-        if (bar.turns)
-            bar.measured = bar.turns->median;
+        bar.take(paired_ratio(ours, theirs));
         add({bar});
         return Done{};
     }

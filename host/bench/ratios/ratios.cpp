@@ -38,8 +38,11 @@ static double cpu_seconds(const Measurement& m) {
 }
 
 double kernel_seconds(const Measurement& m) {
-    const double kernel = spread_of(m.kernel_seconds).median;
-    return kernel > 0 ? kernel : call_seconds(m);
+    return spread_of(kernel_turns(m)).median;
+}
+
+std::span<const double> kernel_turns(const Measurement& m) {
+    return spread_of(m.kernel_seconds).median > 0 ? m.kernel_seconds : m.seconds;
 }
 
 /// Returns the first measurement of a matching contender at the workload of m, or null.

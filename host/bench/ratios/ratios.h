@@ -25,6 +25,8 @@ std::optional<double> mrays(const Measurement& m, double seconds);
 /// alone for the plugin, its own functions for Embree, the whole call for others. For contenders on
 /// the CPU, software renderers included, these are CPU seconds of a thread.
 double kernel_seconds(const Measurement& m);
+/// Returns the seconds of the calls that it is the median of.
+std::span<const double> kernel_turns(const Measurement& m);
 /// Returns the median of the calls' wall-clock seconds.
 double call_seconds(const Measurement& m);
 
