@@ -11,6 +11,7 @@
 #include <exception>
 #include <filesystem>
 #include <mutex>
+#include <shared_mutex>
 #include <stdexcept>
 
 struct ovc_textures_ {
@@ -20,7 +21,7 @@ struct ovc_textures_ {
         int channels;
     };
 
-    std::mutex mutex;
+    std::shared_mutex mutex; // of the pictures, which stay where they are while others are added
     std::deque<OpenPicture> pictures;
     OIIO::ImageCache* cache = nullptr;
     OIIO::TextureSystem* system = nullptr;
@@ -80,8 +81,10 @@ TextureOpt::Wrap wrap_of(uint32_t wrap) {
 
 void destroy(ovc_textures textures) {
     guarded([&] {
-        TextureSystem::destroy(textures->system);
-        ImageCache::destroy(textures->cache);
+        if (textures->system)
+            TextureSystem::destroy(textures->system);
+        if (textures->cache)
+            ImageCache::destroy(textures->cache);
         for (const OpenPicture& picture : textures->pictures)
             ovc::forget_picture(picture.name);
     });
@@ -90,14 +93,16 @@ void destroy(ovc_textures textures) {
 
 ovc_textures create(uint64_t memory_bytes) {
     ovc_textures made = nullptr;
-    guarded([&] {
+    const bool done = guarded([&] {
         made = new ovc_textures_;
         made->cache = ImageCache::create(/* shared= */ false);
         made->system = TextureSystem::create(/* shared= */ false, made->cache);
         made->cache->attribute("max_memory_MB",
                                float(double(memory_bytes) / (1 << 20))); // it takes 10 at least
     });
-    return made;
+    if (!done && made)
+        destroy(made);
+    return done ? made : nullptr;
 }
 
 /// Returns the spec of the picture; throws a sentence where it cannot be read.
@@ -145,10 +150,14 @@ void spread_channels(int channels, float rgba[4]) {
     rgba[3] = opacity;
 }
 
+const OpenPicture& picture_of(ovc_textures textures, uint32_t number) {
+    const std::shared_lock lock(textures->mutex);
+    return textures->pictures[number];
+}
+
 int sample(ovc_textures textures, uint32_t number, const ovc_texture_area* area, float rgba[4]) {
     return guarded([&] {
-        // A deque's elements stay where they are while others are added.
-        const OpenPicture& picture = textures->pictures[number];
+        const OpenPicture& picture = picture_of(textures, number);
         TextureOpt options;
         options.swrap = wrap_of(area->wrap_s);
         options.twrap = wrap_of(area->wrap_t);
