@@ -1,16 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads the patterns of pigments and textures, with their maps, lists, waves and warps.
+// Reads the patterns of pigments, textures and normals, with their waves and warps.
 #pragma once
 
-#include "importers/pov/values/expression.h"
+#include "importers/pov/parse/pattern_map.h"
 
 namespace ovc::pov {
-
-/// What a pattern is for.
-enum class MapOf { Pigments, Textures, Normals };
-
-/// Reads a map of colors, pigments or textures from its { on.
-ColorMap parse_map(Reader& reader, MapOf of);
 
 /// Reads a pattern word by word into a pigment, in any order of its parts.
 class PatternParts {
@@ -65,8 +59,5 @@ private:
     ProgramPtr program_; // of Pattern::Kind::Function
     std::vector<MapStop> stops_;
 };
-
-/// Returns the average of the stops over [0, 1], a middle grey where there are none.
-Color average_of(const std::vector<MapStop>& stops);
 
 } // namespace ovc::pov

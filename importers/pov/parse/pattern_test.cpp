@@ -35,135 +35,61 @@ TransparentColor box_color(const Scene& scene, const dvec3& at) {
     return color_at(scene.textures, material.texture->texture, material.texture->at(at));
 }
 
-struct AskedColor {
+const dvec3 kPlaces[2] = {dvec3(vec3(0.31f, 0.72f, 0.15f)), dvec3(vec3(-1.7f, 2.25f, 0.55f))};
+
+struct AskedColors {
     const char* pigment;
-    vec3 at, rgb;
+    vec3 at_places[2];
 };
 
 /// The colors are those that povray 3.7.0.10 prints for function { pigment { … } }.
-const AskedColor kAskedColors[] = {
-    {"bozo", {0.31f, 0.72f, 0.15f}, {0, 1, 0}},
-    {"bozo", {-1.7f, 2.25f, 0.55f}, {0, 0, 1}},
-    {"marble", {0.31f, 0.72f, 0.15f}, {0.90000f, 0.30400f, 0.30400f}},
-    {"marble", {-1.7f, 2.25f, 0.55f}, {0.90000f, 0.31998f, 0.31998f}},
-    {"wood", {0.31f, 0.72f, 0.15f}, {0.66600f, 0.31200f, 0.20000f}},
-    {"wood", {-1.7f, 2.25f, 0.55f}, {0.66600f, 0.31200f, 0.20000f}},
-    {"agate", {0.31f, 0.72f, 0.15f}, {0.69270f, 0.39270f, 0.09270f}},
-    {"agate", {-1.7f, 2.25f, 0.55f}, {0.66650f, 0.36650f, 0.06650f}},
-    {"radial", {0.31f, 0.72f, 0.15f}, {0.21475f, 0.78525f, 1}},
-    {"radial", {-1.7f, 2.25f, 0.55f}, {1, 0.34895f, 0.65105f}},
-    {"brick", {0.31f, 0.72f, 0.15f}, {0.60000f, 0.15000f, 0.15000f}},
-    {"brick", {-1.7f, 2.25f, 0.55f}, {0.60000f, 0.15000f, 0.15000f}},
-    {"hexagon", {0.31f, 0.72f, 0.15f}, {0, 0, 1}},
-    {"hexagon", {-1.7f, 2.25f, 0.55f}, {1, 0, 0}},
-    {"cubic", {0.31f, 0.72f, 0.15f}, {0, 1, 0}},
-    {"cubic", {-1.7f, 2.25f, 0.55f}, {0, 1, 0}},
-    {"checker rgb x, rgb z scale 0.4", {0.31f, 0.72f, 0.15f}, {0, 0, 1}},
-    {"checker rgb x, rgb z scale 0.4", {-1.7f, 2.25f, 0.55f}, {0, 0, 1}},
+const AskedColors kAskedColors[] = {
+    {"bozo", {{0, 1, 0}, {0, 0, 1}}},
+    {"marble", {{0.90000f, 0.30400f, 0.30400f}, {0.90000f, 0.31998f, 0.31998f}}},
+    {"wood", {{0.66600f, 0.31200f, 0.20000f}, {0.66600f, 0.31200f, 0.20000f}}},
+    {"agate", {{0.69270f, 0.39270f, 0.09270f}, {0.66650f, 0.36650f, 0.06650f}}},
+    {"radial", {{0.21475f, 0.78525f, 1}, {1, 0.34895f, 0.65105f}}},
+    {"brick", {{0.60000f, 0.15000f, 0.15000f}, {0.60000f, 0.15000f, 0.15000f}}},
+    {"hexagon", {{0, 0, 1}, {1, 0, 0}}},
+    {"cubic", {{0, 1, 0}, {0, 1, 0}}},
+    {"checker rgb x, rgb z scale 0.4", {{0, 0, 1}, {0, 0, 1}}},
     {"gradient <1,2,0> turbulence 0.4 color_map { [0.2 rgb x] [0.5 rgb y] [0.5 rgb z] [0.8 rgb 1] "
      "} rotate 30*z",
-     {0.31f, 0.72f, 0.15f},
-     {0.00197f, 0.99803f, 0}},
-    {"gradient <1,2,0> turbulence 0.4 color_map { [0.2 rgb x] [0.5 rgb y] [0.5 rgb z] [0.8 rgb 1] "
-     "} rotate 30*z",
-     {-1.7f, 2.25f, 0.55f},
-     {0.28722f, 0.71278f, 0}},
+     {{0.00197f, 0.99803f, 0}, {0.28722f, 0.71278f, 0}}},
     {"marble turbulence 0.3 lambda 2.2 pigment_map { [0.1 bozo scale 0.3] [0.7 rgb x] } scale 0.7 "
      "translate 0.2",
-     {0.31f, 0.72f, 0.15f},
-     {1, 0, 0}},
-    {"marble turbulence 0.3 lambda 2.2 pigment_map { [0.1 bozo scale 0.3] [0.7 rgb x] } scale 0.7 "
-     "translate 0.2",
-     {-1.7f, 2.25f, 0.55f},
-     {1, 0.04190f, 0.04190f}},
+     {{1, 0, 0}, {1, 0.04190f, 0.04190f}}},
     {"granite warp { turbulence 0.3 octaves 2 } scale 0.5 warp { repeat 2*x offset y flip x } "
      "rotate 20*y",
-     {0.31f, 0.72f, 0.15f},
-     {0.31106f, 0.31106f, 0.31106f}},
-    {"granite warp { turbulence 0.3 octaves 2 } scale 0.5 warp { repeat 2*x offset y flip x } "
-     "rotate 20*y",
-     {-1.7f, 2.25f, 0.55f},
-     {0.39213f, 0.39213f, 0.39213f}},
+     {{0.31106f, 0.31106f, 0.31106f}, {0.39213f, 0.39213f, 0.39213f}}},
     {"average pigment_map { [1 wood scale 0.2] [2 leopard scale 0.1] }",
-     {0.31f, 0.72f, 0.15f},
-     {0.47081f, 0.35281f, 0.31548f}},
-    {"average pigment_map { [1 wood scale 0.2] [2 leopard scale 0.1] }",
-     {-1.7f, 2.25f, 0.55f},
-     {0.22596f, 0.10796f, 0.07063f}},
+     {{0.47081f, 0.35281f, 0.31548f}, {0.22596f, 0.10796f, 0.07063f}}},
     {"checker pigment { onion } pigment { gradient x } turbulence 0.2",
-     {0.31f, 0.72f, 0.15f},
-     {0.71963f, 0.71963f, 0.71963f}},
-    {"checker pigment { onion } pigment { gradient x } turbulence 0.2",
-     {-1.7f, 2.25f, 0.55f},
-     {0.82224f, 0.82224f, 0.82224f}},
+     {{0.71963f, 0.71963f, 0.71963f}, {0.82224f, 0.82224f, 0.82224f}}},
     {"wrinkles color_map { [0, 0.4 color rgb 0 color rgb 1] [0.4, 1 color rgb x color rgb y] } "
      "scale 0.3",
-     {0.31f, 0.72f, 0.15f},
-     {0.52206f, 0.47794f, 0}},
-    {"wrinkles color_map { [0, 0.4 color rgb 0 color rgb 1] [0.4, 1 color rgb x color rgb y] } "
-     "scale 0.3",
-     {-1.7f, 2.25f, 0.55f},
-     {0.51706f, 0.48294f, 0}},
+     {{0.52206f, 0.47794f, 0}, {0.51706f, 0.48294f, 0}}},
     {"spherical sine_wave frequency 3 phase 0.1 scale 2 color_map { [0 rgb x] [1 rgb z] }",
-     {0.31f, 0.72f, 0.15f},
-     {0.78672f, 0, 0.21328f}},
-    {"spherical sine_wave frequency 3 phase 0.1 scale 2 color_map { [0 rgb x] [1 rgb z] }",
-     {-1.7f, 2.25f, 0.55f},
-     {0.20611f, 0, 0.79389f}},
+     {{0.78672f, 0, 0.21328f}, {0.20611f, 0, 0.79389f}}},
     {"function { pow(Wood_fn(x, y, z).red, 2) } color_map { [0 rgb x] [1 rgb z] }",
-     {0.31f, 0.72f, 0.15f},
-     {0.55644f, 0, 0.44356f}},
-    {"function { pow(Wood_fn(x, y, z).red, 2) } color_map { [0 rgb x] [1 rgb z] }",
-     {-1.7f, 2.25f, 0.55f},
-     {0.84f, 0, 0.16f}},
+     {{0.55644f, 0, 0.44356f}, {0.84f, 0, 0.16f}}},
     {"function { abs(Turn(x, y, z).y) * 0.3 + Cracks(x, y, z) / 4 } color_map { [0 rgb x] [1 rgb "
      "z] }",
-     {0.31f, 0.72f, 0.15f},
-     {0.50591f, 0, 0.49409f}},
-    {"function { abs(Turn(x, y, z).y) * 0.3 + Cracks(x, y, z) / 4 } color_map { [0 rgb x] [1 rgb "
-     "z] }",
-     {-1.7f, 2.25f, 0.55f},
-     {0.26453f, 0, 0.73547f}},
+     {{0.50591f, 0, 0.49409f}, {0.26453f, 0, 0.73547f}}},
     {"function { Wood_fn(x, y, z).gray } scale 2 color_map { [0 rgb x] [1 rgb z] }",
-     {0.31f, 0.72f, 0.15f},
-     {0.59563f, 0, 0.40437f}},
-    {"function { Wood_fn(x, y, z).gray } scale 2 color_map { [0 rgb x] [1 rgb z] }",
-     {-1.7f, 2.25f, 0.55f},
-     {0.59563f, 0, 0.40437f}},
+     {{0.59563f, 0, 0.40437f}, {0.59563f, 0, 0.40437f}}},
     {"pigment_pattern { marble turbulence 0.2 } color_map { [0 rgb x] [1 rgb z] }",
-     {0.31f, 0.72f, 0.15f},
-     {1, 0, 0}},
-    {"pigment_pattern { marble turbulence 0.2 } color_map { [0 rgb x] [1 rgb z] }",
-     {-1.7f, 2.25f, 0.55f},
-     {0.65664f, 0, 0.34336f}},
+     {{1, 0, 0}, {0.65664f, 0, 0.34336f}}},
     {"crackle form <1, 0, 0> turbulence 0.2 scale 0.5 color_map { [0 rgb x] [1 rgb z] }",
-     {0.31f, 0.72f, 0.15f},
-     {0.19761f, 0, 0.80239f}},
-    {"crackle form <1, 0, 0> turbulence 0.2 scale 0.5 color_map { [0 rgb x] [1 rgb z] }",
-     {-1.7f, 2.25f, 0.55f},
-     {0.33783f, 0, 0.66217f}},
+     {{0.19761f, 0, 0.80239f}, {0.33783f, 0, 0.66217f}}},
     {"julia <0.353, 0.288>, 20 interior 1, 1 scale 2 color_map { [0 rgb x] [1 rgb z] }",
-     {0.31f, 0.72f, 0.15f},
-     {0.60805f, 0, 0.39195f}},
-    {"julia <0.353, 0.288>, 20 interior 1, 1 scale 2 color_map { [0 rgb x] [1 rgb z] }",
-     {-1.7f, 2.25f, 0.55f},
-     {0.95f, 0, 0.05f}},
-    {"triangular rgb x, rgb z scale 0.4", {0.31f, 0.72f, 0.15f}, {1, 0, 0}},
-    {"triangular rgb x, rgb z scale 0.4", {-1.7f, 2.25f, 0.55f}, {0, 0, 1}},
-    {"square rgb x, rgb z scale 0.4", {0.31f, 0.72f, 0.15f}, {1, 0, 0}},
-    {"square rgb x, rgb z scale 0.4", {-1.7f, 2.25f, 0.55f}, {0, 0, 1}},
+     {{0.60805f, 0, 0.39195f}, {0.95f, 0, 0.05f}}},
+    {"triangular rgb x, rgb z scale 0.4", {{1, 0, 0}, {0, 0, 1}}},
+    {"square rgb x, rgb z scale 0.4", {{1, 0, 0}, {0, 0, 1}}},
     {"gradient x warp { black_hole <0, 1, 0>, 3 strength 0.5 } color_map { [0 rgb x] [1 rgb z] }",
-     {0.31f, 0.72f, 0.15f},
-     {0.57747f, 0, 0.42253f}},
-    {"gradient x warp { black_hole <0, 1, 0>, 3 strength 0.5 } color_map { [0 rgb x] [1 rgb z] }",
-     {-1.7f, 2.25f, 0.55f},
-     {0.7634f, 0, 0.2366f}},
+     {{0.57747f, 0, 0.42253f}, {0.7634f, 0, 0.2366f}}},
     {"function { select(x, min(y, 0.7, z), 0, max(x, y) / 2) } color_map { [0 rgb x] [1 rgb z] }",
-     {0.31f, 0.72f, 0.15f},
-     {0.64f, 0, 0.36f}},
-    {"function { select(x, min(y, 0.7, z), 0, max(x, y) / 2) } color_map { [0 rgb x] [1 rgb z] }",
-     {-1.7f, 2.25f, 0.55f},
-     {0.45f, 0, 0.55f}},
+     {{0.64f, 0, 0.36f}, {0.45f, 0, 0.55f}}},
 };
 
 /// Functions that the pigments call.
@@ -175,12 +101,15 @@ const char* const kFunctions =
 } // namespace
 
 TEST(PovPattern, HasTheColorsThatPovrayPrints) {
-    for (const AskedColor& asked : kAskedColors) {
+    for (const AskedColors& asked : kAskedColors) {
         const Scene scene = textured_scene(
             kFunctions + ("box { -1, 1 pigment { " + std::string(asked.pigment) + " } }"));
-        const TransparentColor color = box_color(scene, dvec3(asked.at));
-        for (int i = 0; i < 3; ++i)
-            EXPECT_NEAR(color.rgb[i], asked.rgb[i], 2e-4) << asked.pigment << " " << i;
+        for (int place = 0; place < 2; ++place) {
+            const TransparentColor color = box_color(scene, kPlaces[place]);
+            for (int i = 0; i < 3; ++i)
+                EXPECT_NEAR(color.rgb[i], asked.at_places[place][i], 2e-4)
+                    << asked.pigment << " " << i;
+        }
     }
 }
 

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reads what a pattern chooses from: the entries of a map or of a list.
+#pragma once
+
+#include "importers/pov/values/expression.h"
+
+#include <vector>
+
+namespace ovc::pov {
+
+/// What a pattern is for.
+enum class MapOf { Pigments, Textures, Normals };
+
+/// Reads a map of colors, pigments, textures or normals from its { on.
+ColorMap parse_map(Reader& reader, MapOf of);
+
+/// Reads the entries of a list, as many as there are; the number of each is its `at`.
+std::vector<MapStop> parse_entries(Reader& reader, MapOf of);
+
+/// Returns the colors that povray gives a pattern without a map or list. word: the pattern's name,
+/// or null.
+std::vector<MapStop> default_stops(const Token* word, Pattern::Kind kind);
+
+/// Returns the average of the stops over [0, 1], a middle grey where there are none.
+Color average_of(const std::vector<MapStop>& stops);
+
+} // namespace ovc::pov
