@@ -67,6 +67,13 @@ def texts_in(value):
             yield from value
 
 
+def measurements(document):
+    """Yields those of all scenes of all runs."""
+    for run in document["runs"]:
+        for scene in run["result"]["scenes"]:
+            yield from scene["measurements"]
+
+
 def at(tree, pointer):
     for part in pointer.strip("/").split("/"):
         tree = tree[int(part)] if isinstance(tree, list) else tree[part]
@@ -163,12 +170,10 @@ class Page(unittest.TestCase):
 
     def test_says_where_a_peer_wins(self):
         def slow(document):
-            for run in document["runs"]:
-                for scene in run["result"]["scenes"]:
-                    for m in scene["measurements"]:
-                        if m["contender"].startswith("embree-robust"):
-                            seconds = m["call_seconds"]
-                            seconds["samples"] = [1e-9 for _ in seconds["samples"]]
+            for m in measurements(document):
+                if m["contender"].startswith("embree-robust"):
+                    seconds = m["call_seconds"]
+                    seconds["samples"] = [1e-9 for _ in seconds["samples"]]
         self.change("error", slow)
         text, tree = self.make()
         self.assertEqual(tree["error"]["wins"], 0)
@@ -177,11 +182,9 @@ class Page(unittest.TestCase):
 
     def test_a_peer_that_only_breaks_ties_has_none_wrong(self):
         def tie(document):
-            for run in document["runs"]:
-                for scene in run["result"]["scenes"]:
-                    for m in scene["measurements"]:
-                        if m["contender"].startswith("embree"):
-                            m.update(differ=m["rays"], tied=m["rays"], wrong=0, beside=0, leaked=0)
+            for m in measurements(document):
+                if m["contender"].startswith("embree"):
+                    m.update(differ=m["rays"], tied=m["rays"], wrong=0, beside=0, leaked=0)
         self.change("error", tie)
         tree = self.make()[1]
         for scene in tree["error"]["scenes"]:
