@@ -4,6 +4,7 @@
 #pragma once
 
 #include "core/result.h"
+#include "core/vec.h"
 #include "shaders/layout.h"
 
 #include <condition_variable>

@@ -15,21 +15,20 @@ namespace ovc::test {
 
 class MemoryTransport final : public Transport {
 public:
-    /// What all ranks share.
+    /// What all ranks share. A rank may still be sending when the one it sends to is gone already.
     struct Network {
-        std::vector<MemoryTransport*> transports;
+        explicit Network(uint32_t ranks) : waiting(ranks) {}
+        std::vector<MessageQueue> waiting; // for each rank
         std::atomic<size_t> closed{0};
         std::atomic<uint32_t> lost{kNone};
     };
 
     static std::vector<std::unique_ptr<MemoryTransport>> make(uint32_t ranks) {
-        const auto network = std::make_shared<Network>();
+        const auto network = std::make_shared<Network>(ranks);
         std::vector<std::unique_ptr<MemoryTransport>> transports;
-        for (uint32_t rank = 0; rank < ranks; ++rank) {
+        for (uint32_t rank = 0; rank < ranks; ++rank)
             transports.push_back(
                 std::unique_ptr<MemoryTransport>(new MemoryTransport(network, rank, ranks)));
-            network->transports.push_back(transports.back().get());
-        }
         return transports;
     }
     ~MemoryTransport() override { close(); }
@@ -60,7 +59,7 @@ public:
 protected:
     void send_away(uint32_t to, Message message) override {
         sent_ += message.bytes().size();
-        network_->transports[to]->waiting_.put(rank_, std::move(message));
+        network_->waiting[to].put(rank_, std::move(message));
     }
 
 private:
@@ -72,7 +71,7 @@ private:
     void run(const std::stop_token& stop) {
         std::mt19937 random(rank_);
         while (!stop.stop_requested())
-            for (Received& received : waiting_.take(std::chrono::milliseconds(2))) {
+            for (Received& received : network_->waiting[rank_].take(std::chrono::milliseconds(2))) {
                 std::this_thread::sleep_for(std::chrono::microseconds(random() % 300));
                 deliver(received.from, std::move(received.message));
             }
@@ -80,7 +79,6 @@ private:
 
     const std::shared_ptr<Network> network_;
     const uint32_t rank_, ranks_;
-    MessageQueue waiting_; // that have arrived, but nobody knows yet
     std::atomic<uint64_t> sent_{0};
     std::jthread thread_;
 };
