@@ -3,20 +3,19 @@
 #include "core/exact/refined.h"
 
 #include "core/exact/exact_solution.h"
-#include "core/exact/rounding.h"
+#include "core/lanes/hit_lanes.h"
 
 #include <cassert>
 
 namespace ovc {
 namespace {
 
-Vec3Of<double> vec(const dvec3& v) {
-    return {v.x, v.y, v.z};
-}
-
 BoundedSolution<double> solution_of(const PreparedRay& p, const Triangle& triangle) {
-    return bounded_solution(Meeting<double>{vec(triangle[0]), vec(triangle[1]), vec(triangle[2]),
-                                            vec(p.ray.org), vec(p.ray.dir)});
+    MeetingLanes lanes{};
+    lanes.set(0, p.ray, triangle);
+    SolutionLanes solutions;
+    solve(lanes, 1, solutions);
+    return solutions.at(0);
 }
 
 /// Returns -1 or 1; 0 where the sign is not known, or the value is exactly 0.
@@ -64,13 +63,13 @@ RefinedAnswer refined_candidate(const PreparedRay& p, const Triangle& triangle, 
 
 Hit rounded_hit(const PreparedRay& p, const Triangle& triangle, TriangleId id, uint32_t support) {
     assert(support > 0 && support <= Candidate::kAllCorners);
-    const BoundedSolution<double> s = solution_of(p, triangle);
-    const Quotient<double> t = over_det(s, s.value.t, s.error.t);
-    const Quotient<double> u = over_det(s, s.value.u, s.error.u);
-    const Quotient<double> v = over_det(s, s.value.v, s.error.v);
+    HitLanes lanes{};
+    lanes.set(0, p.ray, triangle);
+    round_hits(lanes, 1);
     const bool at_a = support == 1, no_u = at_a || !(support & 2), no_v = at_a || !(support & 4);
-    if (t.is_rounded() && (no_u || u.is_rounded()) && (no_v || v.is_rounded()))
-        return {t.value.hi, no_u ? 0 : u.value.hi, no_v ? 0 : v.value.hi, id};
+    const long long known = lanes.known[0] | (no_u ? HitLanes::kU : 0) | (no_v ? HitLanes::kV : 0);
+    if (known == HitLanes::kAll)
+        return {lanes.t[0], no_u ? 0 : lanes.u[0], no_v ? 0 : lanes.v[0], id};
     const ExactSolution exact(p.ray, triangle);
     return {exact.t(), exact.u(), exact.v(), id};
 }

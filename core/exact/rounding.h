@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rounding: computes a solution in doubled precision with bounds of its errors, and rounds t, u and
-// v of a hit once, where the bounds tell how. V is double or a vector of doubles.
+// v of a hit once, where the bounds tell how. V is double or a vector of doubles. The bounds are
+// derived in docs/design/numerics.md, "The reference".
 #pragma once
 
 #include "core/exact/solution.h"
+
+#include <array>
+#include <cstddef>
 
 namespace ovc {
 
@@ -42,24 +46,131 @@ OVC_INLINE V total(const Vec3Of<MagnitudeOf<V>>& v) {
     return v.x.value + v.y.value + v.z.value;
 }
 
-/// The bounds are derived in docs/design/numerics.md, "The reference".
+/// The exact vectors of a meeting, and bounds of what errors of a solution are in proportion to.
 template <class V>
-OVC_INLINE BoundedSolution<V> bounded_solution(const Meeting<V>& m) {
-    constexpr double kBound = 0x1p-101;      // 32 v^2
-    constexpr double kUnderflow = 0x1p-1020; // the loss to underflow in products of two
-    const Vec3Of<DoubleDoubleOf<V>> ab = exact_difference(m.b, m.a);
-    const Vec3Of<DoubleDoubleOf<V>> ac = exact_difference(m.c, m.a);
-    const Vec3Of<DoubleDoubleOf<V>> from_a = exact_difference(m.org, m.a);
-    const Vec3Of<MagnitudeOf<V>> ab_size = magnitudes(ab), ac_size = magnitudes(ac);
-    const Vec3Of<MagnitudeOf<V>> from_a_size = magnitudes(from_a);
-    const Vec3Of<MagnitudeOf<V>> dir_size = magnitudes(m.dir);
-    const Solution<MagnitudeOf<V>> size = solve(ab_size, ac_size, from_a_size, dir_size);
-    const V lost = kUnderflow *
-                   (1 + (total(ab_size) + total(ac_size)) + (total(from_a_size) + total(dir_size)));
-    return {solve(ab, ac, from_a, m.dir),
-            {kBound * size.det.value + lost, kBound * size.u.value + lost,
-             kBound * size.v.value + lost, kBound * size.t.value + lost}};
+struct MeetingVectors {
+    Vec3Of<DoubleDoubleOf<V>> ab, ac, from_a;
+    Vec3Of<V> dir;
+    Solution<V> size; // the sums of the magnitudes of all terms
+    V lost;           // to underflow
+
+    OVC_INLINE explicit MeetingVectors(const Meeting<V>& m)
+        : ab(exact_difference(m.b, m.a)),
+          ac(exact_difference(m.c, m.a)),
+          from_a(exact_difference(m.org, m.a)),
+          dir(m.dir) {
+        constexpr double kUnderflow = 0x1p-1020; // in products of two
+        const Vec3Of<MagnitudeOf<V>> ab_size = magnitudes(ab), ac_size = magnitudes(ac);
+        const Vec3Of<MagnitudeOf<V>> from_size = magnitudes(from_a), dir_size = magnitudes(dir);
+        const Solution<MagnitudeOf<V>> sizes = solve(ab_size, ac_size, from_size, dir_size);
+        size = {sizes.det.value, sizes.u.value, sizes.v.value, sizes.t.value};
+        lost = kUnderflow *
+               (1 + (total(ab_size) + total(ac_size)) + (total(from_size) + total(dir_size)));
+    }
+};
+
+template <class V>
+OVC_INLINE BoundedSolution<V> bounded_solution(const MeetingVectors<V>& m) {
+    constexpr double kBound = 0x1p-101; // 32 v^2
+    return {solve(m.ab, m.ac, m.from_a, m.dir),
+            {kBound * m.size.det + m.lost, kBound * m.size.u + m.lost, kBound * m.size.v + m.lost,
+             kBound * m.size.t + m.lost}};
 }
+
+/// The sum of three doubles, of which the first need not be the largest.
+template <class V>
+using ThreeDoubles = std::array<V, 3>;
+
+/// Adds so many terms, off by at most n^3 v^3 of the sum of their magnitudes. Based on: Ogita, Rump
+/// and Oishi 2005, "Accurate Sum and Dot Product", algorithm 4.8 (SumK), K = 3.
+template <class V, size_t n>
+OVC_INLINE ThreeDoubles<V> sum_closely(std::array<V, n> terms) {
+    for (size_t pass = 0; pass < 2; ++pass)
+        for (size_t i = 1; i < n - pass; ++i) {
+            const DoubleDoubleOf<V> sum = two_sum(terms[i], terms[i - 1]);
+            terms[i] = sum.hi;
+            terms[i - 1] = sum.lo;
+        }
+    V rest = terms[0];
+    for (size_t i = 1; i + 2 < n; ++i)
+        rest = rest + terms[i];
+    return {terms[n - 1], terms[n - 2], rest};
+}
+
+/// Appends terms that a product is the sum of, exactly.
+template <class V>
+OVC_INLINE V* put_product(V* to, V a, V b) {
+    const DoubleDoubleOf<V> product = two_product(a, b);
+    *to++ = product.hi;
+    *to++ = product.lo;
+    return to;
+}
+template <class V>
+OVC_INLINE V* put_product(V* to, const DoubleDoubleOf<V>& a, V b) {
+    return put_product(put_product(to, a.hi, b), a.lo, b);
+}
+template <class V>
+OVC_INLINE V* put_product(V* to, const DoubleDoubleOf<V>& a, const DoubleDoubleOf<V>& b) {
+    return put_product(put_product(to, a, b.hi), a, b.lo);
+}
+
+/// Returns a b - c d.
+template <class V, class B>
+OVC_INLINE ThreeDoubles<V> cross_closely(const DoubleDoubleOf<V>& a, const B& b,
+                                         const DoubleDoubleOf<V>& c, const B& d) {
+    constexpr size_t kProduct = sizeof(B) == sizeof(V) ? 4 : 8; // terms
+    std::array<V, 2 * kProduct> terms;
+    put_product(put_product(terms.data(), a, b), -c, d);
+    return sum_closely(terms);
+}
+
+template <class V>
+OVC_INLINE V* put_product(V* to, const ThreeDoubles<V>& a, V b) {
+    to = put_product(put_product(to, a[0], b), a[1], b);
+    *to++ = a[2] * b;
+    return to;
+}
+/// The last terms are rounded: they are smaller by 2^-100 than the first.
+template <class V>
+OVC_INLINE V* put_product(V* to, const ThreeDoubles<V>& a, const DoubleDoubleOf<V>& b) {
+    to = put_product(put_product(to, a, b.hi), a[0], b.lo);
+    *to++ = a[1] * b.lo;
+    return to;
+}
+
+template <class V, class B>
+OVC_INLINE DoubleDoubleOf<V> dot_closely(const std::array<ThreeDoubles<V>, 3>& a,
+                                         const Vec3Of<B>& b) {
+    constexpr size_t kProduct = sizeof(B) == sizeof(V) ? 5 : 8; // terms
+    std::array<V, 3 * kProduct> terms;
+    put_product(put_product(put_product(terms.data(), a[0], b.x), a[1], b.y), a[2], b.z);
+    const ThreeDoubles<V> sum = sum_closely(terms);
+    const DoubleDoubleOf<V> first = two_sum(sum[0], sum[1]);
+    return two_sum(first.hi, first.lo + sum[2]);
+}
+
+/// u and v of a solution to within 2^-140 of the magnitudes of their terms: that tells how they
+/// round where a ray passes a side by a rounding, and they are tiny.
+template <class V>
+struct CloseWeights {
+    DoubleDoubleOf<V> u, v;
+    V u_error, v_error;
+
+    OVC_INLINE explicit CloseWeights(const MeetingVectors<V>& m) {
+        constexpr double kBound = 0x1p-140;
+        const auto &ab = m.ab, &ac = m.ac, &from_a = m.from_a;
+        const std::array<ThreeDoubles<V>, 3> p = {cross_closely(ac.y, m.dir.z, ac.z, m.dir.y),
+                                                  cross_closely(ac.z, m.dir.x, ac.x, m.dir.z),
+                                                  cross_closely(ac.x, m.dir.y, ac.y, m.dir.x)};
+        u = -dot_closely(p, from_a);
+        const std::array<ThreeDoubles<V>, 3> q = {cross_closely(from_a.y, ab.z, from_a.z, ab.y),
+                                                  cross_closely(from_a.z, ab.x, from_a.x, ab.z),
+                                                  cross_closely(from_a.x, ab.y, from_a.y, ab.x)};
+        v = dot_closely(q, m.dir);
+        u_error = kBound * m.size.u + m.lost;
+        v_error = kBound * m.size.v + m.lost;
+    }
+};
 
 /// A quotient in doubled precision, and its error: the exact number lies within `error` of value.hi
 /// + value.lo.

@@ -22,11 +22,7 @@ public:
     /// Adds a ray and the triangle that it hits. Needs room: not full().
     void add(const Ray& ray, const Triangle& triangle, TriangleId id, const Tag& tag) {
         assert(!full());
-        put(lanes_.a, triangle[0]);
-        put(lanes_.b, triangle[1]);
-        put(lanes_.c, triangle[2]);
-        put(lanes_.org, ray.org);
-        put(lanes_.dir, ray.dir);
+        lanes_.set(count_, ray, triangle);
         entries_[size_t(count_++)] = {ray.t_min, ray.t_max, id, tag};
     }
 
@@ -37,12 +33,13 @@ public:
     void finish(Found&& found, Unclear&& unclear) {
         if (count_ == 0)
             return;
-        round_hits(lanes_);
+        round_hits(lanes_, count_);
         for (int lane = 0; lane < count_; ++lane) {
             const Entry& entry = entries_[size_t(lane)];
             const double t = lanes_.t[lane], u = lanes_.u[lane], v = lanes_.v[lane];
             const bool inside = u >= 0 && v >= 0 && u + v <= 1;
-            if (lanes_.known[lane] && inside && t >= entry.t_min && t <= entry.t_max)
+            if (lanes_.known[lane] == HitLanes::kAll && inside && t >= entry.t_min &&
+                t <= entry.t_max)
                 found(Hit{t, u, v, entry.id}, entry.tag);
             else
                 unclear(entry.tag);
@@ -56,11 +53,6 @@ private:
         TriangleId id;
         Tag tag;
     };
-
-    void put(HitLanes::Vec& to, const dvec3& v) {
-        for (int axis = 0; axis < 3; ++axis)
-            to[axis][count_] = v[axis];
-    }
 
     HitLanes lanes_{};
     std::array<Entry, HitLanes::kCount> entries_{};

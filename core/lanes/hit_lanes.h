@@ -1,30 +1,69 @@
 // SPDX-License-Identifier: Apache-2.0
-// HitLanes: computes t, u and v of several hits at once, rounded once, by the widest vectors that
-// the processor has.
+// HitLanes: computes where several rays meet triangles, and t, u and v of several hits, by the
+// widest vectors that the processor has.
 #pragma once
+
+#include "core/exact/rounding.h"
+#include "core/ray.h"
+#include "core/soup.h"
 
 #include <vector>
 
 namespace ovc {
 
-/// Eight rays and the triangle that each of them hits. Arrays are [axis][lane].
-struct HitLanes {
+/// Eight rays, and a triangle for each.
+struct MeetingLanes {
     static constexpr int kCount = 8;
     using Vec = double[3][kCount];
 
     alignas(64) Vec a, b, c, org, dir;
+
+    void set(int lane, const Ray& ray, const Triangle& triangle) {
+        for (int axis = 0; axis < 3; ++axis) {
+            a[axis][lane] = triangle[0][axis];
+            b[axis][lane] = triangle[1][axis];
+            c[axis][lane] = triangle[2][axis];
+            org[axis][lane] = ray.org[axis];
+            dir[axis][lane] = ray.dir[axis];
+        }
+    }
+};
+
+/// Rays that hit their triangles.
+struct HitLanes : MeetingLanes {
+    /// Bits of `known`. A number that is not known may be anything.
+    static constexpr int kT = 1, kU = 2, kV = 4, kAll = kT | kU | kV;
+
     alignas(64) double t[kCount], u[kCount], v[kCount];
-    /// Not 0: t, u and v are the exact values, rounded to nearest. 0: doubled precision cannot tell
-    /// how they round, and they may be anything.
+    /// Which of t, u and v are the exact values, rounded to nearest. Of the others not even this
+    /// precision tells how they round.
     alignas(64) long long known[kCount];
 };
 
-/// Fills in t, u, v and known of all lanes; unused lanes may hold anything. The bits are the same
-/// on every processor.
-void round_hits(HitLanes& lanes);
+/// Where rays meet the planes of their triangles.
+struct SolutionLanes {
+    static constexpr int kCount = MeetingLanes::kCount;
+    using Number = double[3][kCount]; // the two parts of the number, and a bound of its error
 
-/// Returns a round_hits() per width of vectors that the processor has, the widest last: for tests.
-using RoundHits = void (*)(HitLanes&);
+    alignas(64) Number det, u, v, t;
+
+    BoundedSolution<double> at(int lane) const {
+        const auto value = [&](const Number& n) { return DoubleDouble{n[0][lane], n[1][lane]}; };
+        return {{value(det), value(u), value(v), value(t)},
+                {det[2][lane], u[2][lane], v[2][lane], t[2][lane]}};
+    }
+};
+
+/// Fills in t, u, v and known of the first `count` lanes. The bits are the same on every processor.
+void round_hits(HitLanes& lanes, int count);
+/// Solves the first `count` lanes. The bits are the same on every processor, as long as nothing
+/// over- or underflows.
+void solve(const MeetingLanes& lanes, int count, SolutionLanes& solutions);
+
+/// Returns a function per width of vectors that the processor has, the widest last: for tests.
+using RoundHits = void (*)(HitLanes&, int);
 std::vector<RoundHits> ways_to_round_hits();
+using Solve = void (*)(const MeetingLanes&, int, SolutionLanes&);
+std::vector<Solve> ways_to_solve();
 
 } // namespace ovc

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one source of round_hits(), compiled for each width of vectors in a file of its own with the
-// processor's flags. Everything here is inlined into that file: a function that the linker shared
-// with other files could run where the processor lacks the instructions.
+// The one source of round_hits() and solve(), compiled for each width of vectors in a file of its
+// own with the processor's flags. Everything here is inlined into that file: a function that the
+// linker shared with other files could run where the processor lacks the instructions.
 #pragma once
 
 #include "core/exact/rounding.h"
@@ -11,32 +11,69 @@
 namespace ovc {
 
 template <class V>
-OVC_INLINE Vec3Of<V> load(const HitLanes::Vec& from, int lane) {
+inline constexpr int kLanesOf = int(sizeof(V) / sizeof(double));
+
+template <class V>
+OVC_INLINE Vec3Of<V> load(const MeetingLanes::Vec& from, int lane) {
     return {load<V>(from[0] + lane), load<V>(from[1] + lane), load<V>(from[2] + lane)};
+}
+template <class V>
+OVC_INLINE MeetingVectors<V> vectors_of(const MeetingLanes& lanes, int lane) {
+    return MeetingVectors<V>(Meeting<V>{load<V>(lanes.a, lane), load<V>(lanes.b, lane),
+                                        load<V>(lanes.c, lane), load<V>(lanes.org, lane),
+                                        load<V>(lanes.dir, lane)});
+}
+template <class V>
+OVC_INLINE void store(double* to, const V& lanes) {
+    __builtin_memcpy(to, &lanes, sizeof(V));
 }
 
 /// V is a vector of some of the lanes.
 template <class V>
-OVC_INLINE void round_hits_by(HitLanes& lanes) {
-    for (int lane = 0; lane < HitLanes::kCount; lane += int(sizeof(V) / sizeof(double))) {
-        const Meeting<V> meeting{load<V>(lanes.a, lane), load<V>(lanes.b, lane),
-                                 load<V>(lanes.c, lane), load<V>(lanes.org, lane),
-                                 load<V>(lanes.dir, lane)};
-        const BoundedSolution<V> s = bounded_solution(meeting);
+OVC_INLINE void round_hits_by(HitLanes& lanes, int count) {
+    for (int lane = 0; lane < count; lane += kLanesOf<V>) {
+        const MeetingVectors<V> vectors = vectors_of<V>(lanes, lane);
+        const BoundedSolution<V> s = bounded_solution(vectors);
         const V inverse = 1 / s.value.det.hi;
         const auto over_det = [&](const DoubleDoubleOf<V>& value, V error)
             __attribute__((always_inline)) {
             return quotient(value, error, s.value.det, s.error.det, inverse);
         };
         const Quotient<V> t = over_det(s.value.t, s.error.t);
-        const Quotient<V> u = over_det(s.value.u, s.error.u);
-        const Quotient<V> v = over_det(s.value.v, s.error.v);
-        const auto known = t.is_rounded() & u.is_rounded() & v.is_rounded();
+        Quotient<V> u = over_det(s.value.u, s.error.u);
+        Quotient<V> v = over_det(s.value.v, s.error.v);
+        const uint32_t used = (1u << smaller(count - lane, kLanesOf<V>)) - 1;
+        if (used & ~bits_of<V>(u.is_rounded() & v.is_rounded())) {
+            const CloseWeights<V> close(vectors);
+            u = over_det(close.u, close.u_error);
+            v = over_det(close.v, close.v_error);
+        }
+        const auto known = (t.is_rounded() & HitLanes::kT) | (u.is_rounded() & HitLanes::kU) |
+                           (v.is_rounded() & HitLanes::kV);
         static_assert(sizeof(known) == sizeof(V));
-        __builtin_memcpy(lanes.t + lane, &t.value.hi, sizeof(V));
-        __builtin_memcpy(lanes.u + lane, &u.value.hi, sizeof(V));
-        __builtin_memcpy(lanes.v + lane, &v.value.hi, sizeof(V));
+        store(lanes.t + lane, t.value.hi);
+        store(lanes.u + lane, u.value.hi);
+        store(lanes.v + lane, v.value.hi);
         __builtin_memcpy(lanes.known + lane, &known, sizeof(V));
+    }
+}
+
+template <class V>
+OVC_INLINE void store(SolutionLanes::Number& to, int lane, const DoubleDoubleOf<V>& value,
+                      const V& error) {
+    store(to[0] + lane, value.hi);
+    store(to[1] + lane, value.lo);
+    store(to[2] + lane, error);
+}
+
+template <class V>
+OVC_INLINE void solve_by(const MeetingLanes& lanes, int count, SolutionLanes& solutions) {
+    for (int lane = 0; lane < count; lane += kLanesOf<V>) {
+        const BoundedSolution<V> s = bounded_solution(vectors_of<V>(lanes, lane));
+        store(solutions.det, lane, s.value.det, s.error.det);
+        store(solutions.u, lane, s.value.u, s.error.u);
+        store(solutions.v, lane, s.value.v, s.error.v);
+        store(solutions.t, lane, s.value.t, s.error.t);
     }
 }
 

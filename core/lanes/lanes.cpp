@@ -6,9 +6,12 @@
 
 namespace ovc {
 
-void round_hits_avx2(HitLanes& lanes); // lanes_avx2.cpp
+// In lanes_avx2.cpp and lanes_avx512.cpp.
+void round_hits_avx2(HitLanes& lanes, int count);
+void round_hits_avx512(HitLanes& lanes, int count);
+void solve_avx2(const MeetingLanes& lanes, int count, SolutionLanes& solutions);
+void solve_avx512(const MeetingLanes& lanes, int count, SolutionLanes& solutions);
 uint32_t cull_avx2(const CullRay& ray, CullLanes& lanes);
-void round_hits_avx512(HitLanes& lanes); // lanes_avx512.cpp
 uint32_t cull_avx512(const CullRay& ray, CullLanes& lanes);
 LanesAhead look_ahead_avx2(const LanesScene& scene, const RayLanes& rays);
 LanesAhead look_ahead_avx512(const LanesScene& scene, const RayLanes& rays);
@@ -47,8 +50,11 @@ private:
     }
 };
 
-static void round_hits_anywhere(HitLanes& lanes) {
-    round_hits_by<Two>(lanes);
+static void round_hits_anywhere(HitLanes& lanes, int count) {
+    round_hits_by<Two>(lanes, count);
+}
+static void solve_anywhere(const MeetingLanes& lanes, int count, SolutionLanes& solutions) {
+    solve_by<Two>(lanes, count, solutions);
 }
 static uint32_t cull_anywhere(const CullRay& ray, CullLanes& lanes) {
     return cull_by<Two>(ray, lanes);
@@ -86,6 +92,9 @@ std::vector<Function> ways(Function anywhere, [[maybe_unused]] Function avx2,
 std::vector<RoundHits> ways_to_round_hits() {
     return OVC_WAYS(round_hits);
 }
+std::vector<Solve> ways_to_solve() {
+    return OVC_WAYS(solve);
+}
 std::vector<Cull> ways_to_cull() {
     return OVC_WAYS(cull);
 }
@@ -96,9 +105,13 @@ std::vector<ToFrame> ways_to_frame() {
     return OVC_WAYS(to_frame);
 }
 
-void round_hits(HitLanes& lanes) {
+void round_hits(HitLanes& lanes, int count) {
     static const RoundHits widest = ways_to_round_hits().back();
-    widest(lanes);
+    widest(lanes, count);
+}
+void solve(const MeetingLanes& lanes, int count, SolutionLanes& solutions) {
+    static const Solve widest = ways_to_solve().back();
+    widest(lanes, count, solutions);
 }
 uint32_t cull(const CullRay& ray, CullLanes& lanes) {
     static const Cull widest = ways_to_cull().back();

@@ -22,8 +22,11 @@ struct Lanes<Four> {
     }
 };
 
-void round_hits_avx2(HitLanes& lanes) {
-    round_hits_by<Four>(lanes);
+void round_hits_avx2(HitLanes& lanes, int count) {
+    round_hits_by<Four>(lanes, count);
+}
+void solve_avx2(const MeetingLanes& lanes, int count, SolutionLanes& solutions) {
+    solve_by<Four>(lanes, count, solutions);
 }
 uint32_t cull_avx2(const CullRay& ray, CullLanes& lanes) {
     return cull_by<Four>(ray, lanes);

@@ -21,8 +21,11 @@ struct Lanes<Eight> {
     }
 };
 
-void round_hits_avx512(HitLanes& lanes) {
-    round_hits_by<Eight>(lanes);
+void round_hits_avx512(HitLanes& lanes, int count) {
+    round_hits_by<Eight>(lanes, count);
+}
+void solve_avx512(const MeetingLanes& lanes, int count, SolutionLanes& solutions) {
+    solve_by<Eight>(lanes, count, solutions);
 }
 uint32_t cull_avx512(const CullRay& ray, CullLanes& lanes) {
     return cull_by<Eight>(ray, lanes);
