@@ -3,7 +3,6 @@
 #include "core/exact/refined.h"
 
 #include "core/exact/exact_solution.h"
-#include "core/lanes/hit_lanes.h"
 
 #include <cassert>
 
@@ -61,17 +60,22 @@ RefinedAnswer refined_candidate(const PreparedRay& p, const Triangle& triangle, 
     return {true, Candidate{about, t.value.lo, t.error, Candidate::kAllCorners, true}};
 }
 
-Hit rounded_hit(const PreparedRay& p, const Triangle& triangle, TriangleId id, uint32_t support) {
+Hit rounded_hit(const HitLanes& lanes, int lane, TriangleId id, uint32_t support) {
     assert(support > 0 && support <= Candidate::kAllCorners);
+    const bool at_a = support == 1, no_u = at_a || !(support & 2), no_v = at_a || !(support & 4);
+    const long long known =
+        lanes.known[lane] | (no_u ? HitLanes::kU : 0) | (no_v ? HitLanes::kV : 0);
+    if (known == HitLanes::kAll)
+        return {lanes.t[lane], no_u ? 0 : lanes.u[lane], no_v ? 0 : lanes.v[lane], id};
+    const ExactSolution exact(lanes.ray(lane), lanes.triangle(lane));
+    return {exact.t(), exact.u(), exact.v(), id};
+}
+
+Hit rounded_hit(const PreparedRay& p, const Triangle& triangle, TriangleId id, uint32_t support) {
     HitLanes lanes{};
     lanes.set(0, p.ray, triangle);
     round_hits(lanes, 1);
-    const bool at_a = support == 1, no_u = at_a || !(support & 2), no_v = at_a || !(support & 4);
-    const long long known = lanes.known[0] | (no_u ? HitLanes::kU : 0) | (no_v ? HitLanes::kV : 0);
-    if (known == HitLanes::kAll)
-        return {lanes.t[0], no_u ? 0 : lanes.u[0], no_v ? 0 : lanes.v[0], id};
-    const ExactSolution exact(p.ray, triangle);
-    return {exact.t(), exact.u(), exact.v(), id};
+    return rounded_hit(lanes, 0, id, support);
 }
 
 } // namespace ovc

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "core/exact/triangle.h"
+#include "core/lanes/hit_lanes.h"
 
 namespace ovc {
 
@@ -16,6 +17,10 @@ struct RefinedAnswer {
 
 /// Returns the answer of exact_candidate() for finite corners, where it is known.
 RefinedAnswer refined_candidate(const PreparedRay& p, const Triangle& triangle, TriangleId id);
+
+/// Returns the hit of a lane, of which round_hits() has found what it could: t, u and v rounded
+/// once. support: as in Candidate.
+Hit rounded_hit(const HitLanes& lanes, int lane, TriangleId id, uint32_t support);
 
 /// Returns the hit of a triangle that is hit, t, u and v rounded once. support: as in Candidate.
 Hit rounded_hit(const PreparedRay& p, const Triangle& triangle, TriangleId id, uint32_t support);

@@ -27,6 +27,12 @@ struct MeetingLanes {
             dir[axis][lane] = ray.dir[axis];
         }
     }
+    /// Returns the ray of a lane, without its ends.
+    Ray ray(int lane) const { return {at(org, lane), 0, at(dir, lane)}; }
+    Triangle triangle(int lane) const { return {at(a, lane), at(b, lane), at(c, lane)}; }
+
+private:
+    static dvec3 at(const Vec& v, int lane) { return {v[0][lane], v[1][lane], v[2][lane]}; }
 };
 
 /// Rays that hit their triangles.

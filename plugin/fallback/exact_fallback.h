@@ -5,6 +5,7 @@
 // could be hit.
 #pragma once
 
+#include "core/exact/refined.h"
 #include "kdtree/approach.h"
 #include "plugin/fallback/rays_together.h"
 #include "plugin/fallback/scene_walk.h"
@@ -28,9 +29,8 @@ public:
 
     const Approach& approach() const { return approach_; }
     double limit() const { return approach_.limit(nearest_); }
-    Hit hit() const { return kAnyHit ? nearest_.unrounded_hit() : nearest_.hit(); }
-    /// Returns one of the triangles that the ray hits, or none.
-    TriangleId near() const { return nearest_.unrounded_hit().id; }
+    /// Returns the nearest of the triangles that the ray hits, or with kAnyHit some of them.
+    const Candidate& found() const { return nearest_.best().found; }
 
 private:
     static constexpr uint32_t kFew = 32;
@@ -50,26 +50,33 @@ private:
     bool gives_up_ = false;
 };
 
-/// Traces a valid ray to its nearest hit, or with kAnyHit to some hit. Returns false where it meets
-/// too many triangles: then hit.id is one that it hits, or none, for RaysTogether. Any thread.
+/// What trace_few() found.
+struct FewFound {
+    bool is_answer = false; // false: the ray meets too many triangles
+    Candidate found;        // the hit, not rounded; else one of the ray, or none, for RaysTogether
+};
+
+/// Traces a valid ray to its nearest hit, or with kAnyHit to some hit. Any thread.
 template <bool kAnyHit>
-bool trace_few(const BuiltScene& scene, const PreparedRay& p, Hit& hit) {
+FewFound trace_few(const BuiltScene& scene, const PreparedRay& p) {
     FewTest<kAnyHit> few(scene, p);
     walk_scene(
         scene, few.approach().ray(), [&](uint32_t number) { return few.test(number); },
         [&] { return few.limit(); });
-    hit = few.gives_up() ? Hit{0, 0, 0, few.near()} : few.hit();
-    return !few.gives_up();
+    return {!few.gives_up(), few.found()};
 }
 
 /// Returns the nearest hit of a valid ray, or with kAnyHit some hit. Any thread.
 template <bool kAnyHit>
 Hit trace_exactly(const BuiltScene& scene, const PreparedRay& p) {
-    Hit hit;
-    if (trace_few<kAnyHit>(scene, p, hit))
-        return hit;
+    const auto [is_answer, found] = trace_few<kAnyHit>(scene, p);
+    const TriangleId id = found.hit.id;
+    if (is_answer && (kAnyHit || !found.hit.is_hit()))
+        return found.hit;
+    if (is_answer)
+        return rounded_hit(p, scene.soup.triangle(id), id, found.support);
     RaysTogether<kAnyHit> alone(scene);
-    alone.add(p, hit.id);
+    alone.add(p, id);
     alone.trace([] { return true; });
     return alone.hit(0);
 }

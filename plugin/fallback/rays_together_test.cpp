@@ -91,12 +91,10 @@ public:
             size = std::min(1 + size % RaysTogether<kAnyHit>::kMaxRays, rays_.size() - first);
             RaysTogether<kAnyHit> together(*scene_);
             for (size_t i = first; i < first + size; ++i) {
-                Hit hit;
-                if (trace_few<kAnyHit>(*scene_, rays_[i], hit))
-                    expect_hit<kAnyHit>(i, hit);
-                else
-                    ++many;
-                together.add(rays_[i], hit.id);
+                const FewFound few = trace_few<kAnyHit>(*scene_, rays_[i]);
+                many += !few.is_answer;
+                expect_hit<kAnyHit>(i, trace_exactly<kAnyHit>(*scene_, rays_[i]));
+                together.add(rays_[i], few.found.hit.id);
             }
             together.trace([] { return true; });
             for (size_t k = 0; k < size; ++k)

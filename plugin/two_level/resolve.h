@@ -4,6 +4,7 @@
 #pragma once
 
 #include "core/lanes/hit_batch.h"
+#include "core/lanes/rounding_batch.h"
 #include "core/system/parallel.h"
 #include "gpu/trace/tracer.h"
 #include "plugin/fallback/exact_fallback.h"
@@ -130,9 +131,10 @@ public:
         if (!tracing_.watch.keeps_on())
             return;
         HitBatch<size_t> certain; // tagged with the index in `answers`
+        Decided decided;
         std::vector<uint32_t> in_doubt;
         const auto look = [&](size_t j) {
-            if (!resolve_one(rays[j], answers[j], go_on))
+            if (!resolve_one(rays[j], answers[j], decided, go_on))
                 in_doubt.push_back(rays[j]);
         };
         const auto enter = [&](const Hit& hit, size_t j) {
@@ -155,7 +157,8 @@ public:
                 certain.finish(enter, look);
         }
         certain.finish(enter, look);
-        fall_back(in_doubt);
+        fall_back(in_doubt, decided);
+        enter_all(decided);
     }
 
     /// Answers ray i for good, whatever it has met, unless the call is cancelled. That is asked for
@@ -167,6 +170,8 @@ public:
 
 private:
     using Together = RaysTogether<Query::kAnyHit>;
+    /// Hits that are decided, but not rounded, each tagged with its ray.
+    using Decided = RoundingBatch<uint32_t>;
     /// A ray that meets many triangles, and one that it hits, or none.
     struct Left {
         uint32_t i;
@@ -210,20 +215,34 @@ private:
             go_on(i, answer.where, std::nextafter(hit.t, std::numeric_limits<double>::max()));
     }
 
+    void enter_all(Decided& decided) {
+        decided.finish([&](const Hit& hit, uint32_t i) { query_.set(i, hit); });
+    }
+
+    /// Enters a hit that exact arithmetic has decided, or none.
+    void enter_decided(uint32_t i, const Candidate& found, Decided& decided) {
+        const TriangleId id = found.hit.id;
+        if (Query::kAnyHit || !found.hit.is_hit())
+            return query_.set(i, found.hit);
+        decided.add(query_.rays[i], scene_.soup.triangle(id), id, found.support, i);
+        if (decided.full())
+            enter_all(decided);
+    }
+
     /// Returns false where the ray must go to the exact fallback.
     template <class GoOn>
-    bool resolve_one(uint32_t i, const Answer& answer, GoOn&& go_on) {
+    bool resolve_one(uint32_t i, const Answer& answer, Decided& decided, GoOn&& go_on) {
         capped_ += answer.prim == OVC_CAPPED;
         if (answer.prim == OVC_FLAGGED || answer.prim == OVC_CAPPED)
             return false;
         if (tracing_.options.certify)
-            return resolve_candidates(i, answer, go_on);
+            return resolve_candidates(i, answer, decided, go_on);
         return enter_fast(i, answer, go_on);
     }
 
     /// Returns false where exact arithmetic does not confirm the certain hit.
     template <class GoOn>
-    bool resolve_candidates(uint32_t i, const Answer& answer, GoOn&& go_on) {
+    bool resolve_candidates(uint32_t i, const Answer& answer, Decided& decided, GoOn&& go_on) {
         const Candidates found = candidates_of(answer);
         if (found.is_miss())
             return true;
@@ -238,7 +257,7 @@ private:
         if (!found.offer_to(nearest, p, scene_))
             return false;
         if (nearest.is_hit())
-            query_.set(i, nearest);
+            enter_decided(i, nearest.best().found, decided);
         if (answer.where != OVC_NO_LEAF && !(Query::kAnyHit && nearest.is_hit()))
             go_on(i, answer.where, nearest.limit());
         if (found.has_further()) // fall_back() counts the others
@@ -266,17 +285,21 @@ private:
     }
 
     /// Answers the rays exactly. Those that meet many triangles are traced together.
-    void fall_back(std::span<const uint32_t> rays) {
-        std::vector<uint8_t> is_left(rays.size());
-        std::vector<TriangleId> near(rays.size());
+    void fall_back(std::span<const uint32_t> rays, Decided& decided) {
+        std::vector<FewFound> few(rays.size());
         run(rays.size(), /* worth= */ 8, [&](size_t j) {
             count_fallback(rays[j]);
-            is_left[j] = tracing_.watch.keeps_on() && !answer_by_few(rays[j], near[j]);
+            if (tracing_.watch.keeps_on())
+                few[j] = trace_few<Query::kAnyHit>(scene_, prepared(rays[j]));
         });
+        if (!tracing_.watch.keeps_on())
+            return;
         std::vector<Left> left;
         for (size_t j = 0; j < rays.size(); ++j)
-            if (is_left[j])
-                left.push_back({rays[j], near[j]});
+            if (few[j].is_answer)
+                enter_decided(rays[j], few[j].found, decided);
+            else
+                left.push_back({rays[j], few[j].found.hit.id});
         // Rays to the same or to neighbouring triangles probably go the same way.
         std::ranges::sort(left, {}, [](const Left& ray) { return std::pair(ray.near, ray.i); });
         const size_t groups = (left.size() + Together::kMaxRays - 1) / Together::kMaxRays;
@@ -299,16 +322,6 @@ private:
             some(0, count);
         else
             parallel_for(count, 1, some);
-    }
-
-    /// Returns false where ray i meets many triangles. near: receives one that it hits, or none.
-    bool answer_by_few(uint32_t i, TriangleId& near) {
-        Hit hit;
-        const bool is_answer = trace_few<Query::kAnyHit>(scene_, prepared(i), hit);
-        if (is_answer)
-            query_.set(i, hit);
-        near = hit.id;
-        return is_answer;
     }
 
     void answer_together(std::span<const Left> rays) {
