@@ -18,11 +18,13 @@ public:
     /// first: of the first triangle.
     explicit Numbering(const Soup& soup, uint32_t first = 0) : first_{first} { append(soup); }
 
-    /// Numbers the triangles of chunks that the soup has got since. Those before keep theirs.
+    /// Numbers the triangles of chunks that the soup has got since. Those before keep theirs. Takes
+    /// time in proportion to all chunks.
     void append(const Soup& soup) {
         first_.reserve(soup.chunks.size() + 1);
         for (size_t mesh = meshes(); mesh < soup.chunks.size(); ++mesh)
             first_.push_back(first_.back() + soup.chunks[mesh].size());
+        find_stretches();
     }
     uint64_t meshes() const { return first_.size() - 1; }
     uint32_t first() const { return first_.front(); }
@@ -38,14 +40,41 @@ public:
         assert(number < first_.back());
         if (first_.size() == 2)
             return {0, number - first_.front()};
-        // The last chunk that begins at or before the number holds it; empty ones may precede.
-        const auto after = std::upper_bound(first_.begin(), first_.end(), number);
-        const uint32_t mesh = uint32_t(after - first_.begin()) - 1;
+        const uint32_t stretch = (number - first_.front()) >> stretch_bits_;
+        const uint32_t mesh = mesh_of(number, mesh_at_[stretch], mesh_at_[stretch + 1]);
         return {mesh, number - first_[mesh]};
     }
 
 private:
+    /// Returns the last chunk, of these, that begins at or before the number: that one holds it,
+    /// and empty ones may precede.
+    uint32_t mesh_of(uint32_t number, uint32_t from, uint32_t to) const {
+        const auto begin = first_.begin();
+        return uint32_t(std::upper_bound(begin + from + 1, begin + to + 1, number) - begin) - 1;
+    }
+
+    void find_stretches() {
+        mesh_at_.clear();
+        if (meshes() < 2 || count() == first())
+            return;
+        const uint64_t numbers = count() - first();
+        for (stretch_bits_ = 0; numbers >> stretch_bits_ > meshes();)
+            ++stretch_bits_;
+        const uint32_t last = uint32_t(meshes()) - 1;
+        uint32_t mesh = 0;
+        for (uint64_t number = first(); number < count(); number += uint64_t(1) << stretch_bits_) {
+            while (mesh < last && first_[mesh + 1] <= number)
+                ++mesh;
+            mesh_at_.push_back(mesh);
+        }
+        mesh_at_.push_back(last);
+    }
+
     std::vector<uint32_t> first_{0}; // of each chunk, and behind the last the count of all
+    // Numbers are cut into stretches of 2^stretch_bits_, about as many as there are chunks, so that
+    // id() looks at few of these.
+    uint32_t stretch_bits_ = 0;
+    std::vector<uint32_t> mesh_at_; // that holds the first number of a stretch; behind, the last
 };
 
 } // namespace ovc

@@ -247,7 +247,7 @@ private:
         if (found.is_miss())
             return true;
         if (Query::kAnyHit && found.is_certain_hit() && query_.without.after.empty()) {
-            query_.set(i, Hit{0, 0, 0, scene_.numbers.id(found.certain)});
+            query_.set(i, Hit{0, 0, 0, {0, 0}}); // the triangle is not kept
             return true;
         }
         const PreparedRay p = prepared(i);
