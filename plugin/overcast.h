@@ -8,7 +8,8 @@
  * buffer. Structs that go in begin with struct_size = sizeof(the struct); every other field means "default" when zero. Structs
  * and the table only ever grow at their end: the struct_size of an earlier header is fine. The manual is docs/reference/abi.md.
  * Calls may come from any thread, of 256 KiB of stack at least; calls on one scene wait their turn, first come, first served. The
- * caller's GL context, floating-point state and environment are left alone: each device has a thread of its own. The functions that
+ * caller's GL context, floating-point state and environment are left alone, but for prepare_process(): each device has a thread of
+ * its own. The functions that
  * a caller hands in for errors, logs, progress and what is saved may call last_error and nothing else. In a process that is forked,
  * the parent's handles are errors. */
 #ifndef OVERCAST_H
@@ -693,6 +694,14 @@ typedef struct ovc_api {
      * nothing here. OVC_ERROR_OUT_OF_BUDGET: host_memory_bytes are too few, and the sentence names the smallest number that works.
      * OVC_ERROR_CANCELLED where a function of the host's says so. */
     ovc_result (*save_streamed)(ovc_device device, const ovc_scene_config* config, const ovc_streamed_scene* scene);
+
+    /* For a host that owns its process and draws nothing by OpenGL itself: sets the environment variables by which Mesa's
+     * software renderer is fastest, should that become the device, for scenes that ask for this kernel. They are
+     * LP_NATIVE_VECTOR_WIDTH, where the CPU has vectors of 512 bits, and MESA_SHADER_CACHE_DIR or MESA_SHADER_CACHE_DISABLE with it.
+     * What the user has set stays. Call it before other threads read the environment. At that width llvmpipe (22.3) crashes on
+     * fragment shaders, the host's own too. OVC_ERROR_INVALID_STATE where a device was listed or opened before: the renderer no
+     * longer looks. */
+    ovc_result (*prepare_process)(ovc_kernel kernel);
 } ovc_api;
 
 #if defined(_WIN32)

@@ -78,6 +78,13 @@ inline const ovc_api& linked_api() {
     throw Error(OVC_ERROR_NO_DEVICE, "libovercast.so does not have the ABI of overcast.h");
 }
 
+/// Prepares the process for devices; see ovc_api.prepare_process.
+inline void prepare_process(ovc_kernel kernel = OVC_KERNEL_AUTO,
+                            const ovc_api& api = linked_api()) {
+    if (const ovc_result result = api.prepare_process(kernel); result != OVC_OK)
+        throw Error(result, api.last_error(nullptr));
+}
+
 /// Owns a device, and its thread. Outlives its scenes. Move-only; a moved-from one is empty.
 class Device {
 public:

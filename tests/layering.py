@@ -26,12 +26,13 @@ MAY_INCLUDE = {
 # include them all.
 PARTS = {
     "gpu/budget": set(),
-    "gpu/gl": {"gpu/budget"},
+    "gpu/driver": set(),
+    "gpu/gl": {"gpu/budget", "gpu/driver"},
     "gpu/bvh": set(),
     "gpu/frame": set(),
     "gpu/page": {"gpu/bvh", "gpu/frame"},
     "gpu/tuning": {"gpu/gl"},
-    "gpu/trace": {"gpu/budget", "gpu/frame", "gpu/gl", "gpu/page", "gpu/tuning"},
+    "gpu/trace": {"gpu/budget", "gpu/driver", "gpu/frame", "gpu/gl", "gpu/page", "gpu/tuning"},
     "plugin/structure": {"plugin"},
     "plugin/abi": {"plugin", "plugin/structure", "plugin/leaf_store"},
     "plugin/leaf_store": set(),

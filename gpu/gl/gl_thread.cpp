@@ -2,7 +2,7 @@
 // GlThread: hands one piece of work at a time over to the thread.
 #include "gpu/gl/gl_thread.h"
 
-#include "gpu/gl/driver_threads.h"
+#include "gpu/driver/driver_threads.h"
 
 #include <chrono>
 #include <utility>

@@ -6,7 +6,7 @@
 #include "core/function_ref.h"
 #include "core/result.h"
 #include "gpu/budget/ledger.h"
-#include "gpu/gl/driver_threads.h"
+#include "gpu/driver/driver_threads.h"
 #include "gpu/gl/egl_context.h"
 #include "gpu/gl/kernel.h"
 #include "gpu/gl/workarounds.h"

@@ -34,8 +34,18 @@ struct DeviceOpening::HeldLog {
     }
 };
 
+static bool needs_device(const BackendOptions& options) {
+    return options.kind != BackendKind::CpuKdTree && options.kind != BackendKind::Embree;
+}
+
+void prepare_process(const BackendOptions& options) {
+    // The thesis' systems have fragment kernels.
+    if (needs_device(options) && structure_of(options.kind) == OVC_STRUCTURE_TWO_LEVEL)
+        prepare_process(options.kernel);
+}
+
 DeviceOpening::DeviceOpening(const BackendOptions& options) : held_(std::make_shared<HeldLog>()) {
-    if (options.kind == BackendKind::CpuKdTree || options.kind == BackendKind::Embree)
+    if (!needs_device(options))
         return;
     const auto open = [held = held_, name = options.device,
                        structure = structure_of(options.kind)]() -> Opened {

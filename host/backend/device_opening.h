@@ -11,6 +11,9 @@
 
 namespace ovc {
 
+/// Lets the library prepare the process for the only backend that it will have.
+void prepare_process(const BackendOptions& options);
+
 class DeviceOpening {
 public:
     /// Begins to open the device of these options on a thread of its own, unless the backend needs

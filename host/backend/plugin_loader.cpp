@@ -61,6 +61,11 @@ Result<const ovc_api*> load_plugin(const std::string& library) {
     return load_from(find_plugin(is_ranked ? kRankedProduct : library));
 }
 
+void prepare_process(ovc_kernel kernel) {
+    if (const Result<const ovc_api*> api = load_plugin())
+        (*api)->prepare_process(kernel); // where it comes too late, the log tells what that costs
+}
+
 static void forward_log(void* user, ovc_log_level level, const char* message) {
     say(*static_cast<const LogSink*>(user), LogLevel(level), message);
 }

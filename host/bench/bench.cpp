@@ -35,7 +35,7 @@ uint64_t count_differing(std::span<const uint64_t> a, std::span<const uint64_t> 
 /// Returns the seconds of the kernel alone, without moving rays and answers. For a tree on the CPU
 /// this is the kernel's share of the call, in CPU seconds a thread: it equals wall time on an idle
 /// machine and is hardly disturbed on a busy one. The kernel time of a software renderer is CPU
-/// time already (gpu/gl/driver_threads.h).
+/// time already (gpu/driver/driver_threads.h).
 double kernel_alone(const ovc_statistics& before, const ovc_statistics& after, double seconds,
                     double cpu_seconds) {
     const double kernel = after.seconds_kernel - before.seconds_kernel;

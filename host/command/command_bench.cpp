@@ -2,7 +2,7 @@
 // overcast bench: times the plugin, certified and fast, and its peers in turn on the same rays. Its
 // other tables are the performance targets (--bars), whole programs, sweeps and pictures.
 #include "host/arguments/log_arguments.h"
-#include "host/arguments/vector_width.h"
+#include "host/backend/plugin_loader.h"
 #include "host/bench/bars/run_bars.h"
 #include "host/bench/bench_arguments.h"
 #include "host/bench/bench_text.h"
@@ -210,7 +210,8 @@ bool any_fragment_kernel(const std::vector<Contender>& contenders) {
 }
 
 Result<Done> bench_kind(const BenchJob& job, const BenchSurroundings& around) {
-    use_wide_vectors(job.kind == BenchKind::Contenders && any_fragment_kernel(job.contenders));
+    if (job.kind != BenchKind::Contenders || !any_fragment_kernel(job.contenders))
+        prepare_process(OVC_KERNEL_AUTO);
     switch (job.kind) {
     case BenchKind::Bars:
         return bench_bars(job, around);

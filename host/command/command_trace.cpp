@@ -3,7 +3,6 @@
 #include "host/arguments/arguments.h"
 #include "host/arguments/backend_arguments.h"
 #include "host/arguments/log_arguments.h"
-#include "host/arguments/vector_width.h"
 #include "host/backend/device_opening.h"
 #include "host/backend/trace_stream.h"
 #include "host/command/command.h"
@@ -64,7 +63,7 @@ public:
         const Ranks* const ranks = Ranks::of_run();
         const LogSink log =
             standard_error_log(ranks && !ranks->is_first() ? LogLevel::Error : *level);
-        use_wide_vectors(*backend_options);
+        prepare_process(*backend_options);
         DeviceOpening opening(*backend_options);
         source_.host_bytes = backend_options->host_bytes;
         const Result<Scene> scene = open_scene(source_, log);

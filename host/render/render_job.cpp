@@ -6,7 +6,6 @@
 #include "core/system/parallel.h"
 #include "core/system/stopwatch.h"
 #include "core/text/printable.h"
-#include "host/arguments/vector_width.h"
 #include "host/backend/device_opening.h"
 #include "host/camera/camera.h"
 #include "host/film/unfinished.h"
@@ -533,7 +532,7 @@ Result<int> render(const RenderJob& job) {
     const LogSink log = standard_error_log(job.log_level);
     tell_of_nothing_to_go_on_with(job, log);
     RenderStats stats;
-    use_wide_vectors(job.backend);
+    prepare_process(job.backend);
     DeviceOpening opening(job.backend);
     SceneCache cache(job.cache, job.scene, job.backend, job.size);
     Result<Scene> scene = cache.open(log);

@@ -4,12 +4,15 @@
 
 #include "core/system/parallel.h"
 #include "core/text/format_text.h"
+#include "gpu/driver/vector_width.h"
 #include "gpu/trace/tracer.h"
 #include "plugin/abi/device_call.h"
 #include "plugin/abi/struct_size.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cstring>
+#include <optional>
 #include <thread>
 
 namespace ovc {
@@ -56,6 +59,9 @@ void fill(ovc_device_info& to, const DeviceInfo& from) {
     std::memcpy(&to, &all, size);
 }
 
+/// Whether a driver may have read the environment.
+std::atomic<bool> drivers_loaded{false};
+
 void check_environment() {
     if (const Result<Done> environment = check_egl_environment(); !environment)
         throw Failure{OVC_ERROR_INVALID_ARGUMENT, environment.error().message};
@@ -64,6 +70,11 @@ void check_environment() {
 Failure no_device_for(const Error& error) {
     return {error.kind == ErrorKind::OutOfMemory ? OVC_ERROR_OUT_OF_MEMORY : OVC_ERROR_NO_DEVICE,
             error.message};
+}
+
+void advise(const LogSink& log, const DeviceInfo& info) {
+    if (const std::optional<std::string> advice = advice_on_vectors(info.renderer))
+        say(log, LogLevel::Info, *advice);
 }
 
 /// EGL's idea of a current context is per thread: a thread of our own leaves the host's alone.
@@ -115,6 +126,7 @@ ovc_result list_devices(ovc_device_info* infos, uint32_t capacity, uint32_t* cou
         if (!count || (capacity && !infos))
             throw Failure{OVC_ERROR_INVALID_ARGUMENT, "list_devices: infos or count is NULL"};
         check_environment();
+        drivers_loaded = true;
         const Result<std::vector<DeviceInfo>> found = list_on_own_thread();
         if (!found)
             throw no_device_for(found.error());
@@ -153,6 +165,7 @@ ovc_result create_device(const ovc_device_config* given, ovc_device* device) {
                 log(user, ovc_log_level(level), printable(text).c_str());
             };
         check_environment();
+        drivers_loaded = true;
         start_threads();
         Result<std::unique_ptr<GlThread>> gl =
             GlThread::start(config.name ? config.name : "", created->log,
@@ -164,11 +177,25 @@ ovc_result create_device(const ovc_device_config* given, ovc_device* device) {
             throw Failure{OVC_ERROR_OUT_OF_BUDGET,
                           "ovc_device_config.gpu_memory_bytes: " + plan.error().message};
         created->gl = std::move(*gl);
+        advise(created->log, created->gl->info());
         *device = created.release();
     });
     if (result != OVC_OK && config.error)
         config.error(config.error_user, result, no_device.get());
     return result;
+}
+
+ovc_result prepare_process(ovc_kernel kernel) {
+    return guard(no_device, [&] {
+        if (uint32_t(kernel) > OVC_KERNEL_COMPUTE)
+            throw Failure{OVC_ERROR_INVALID_ARGUMENT,
+                          format_text("prepare_process: kernel is {}, expected 0 to {}",
+                                      uint32_t(kernel), uint32_t(OVC_KERNEL_COMPUTE))};
+        if (drivers_loaded)
+            throw Failure{OVC_ERROR_INVALID_STATE,
+                          "prepare_process: a device was listed or opened before; call it first"};
+        use_wide_vectors(kernel == OVC_KERNEL_FRAGMENT);
+    });
 }
 
 ovc_result describe_device(ovc_device device, ovc_device_info* info) {

@@ -47,6 +47,17 @@ Misuses misuse_create_device(Subject& s) {
     return wrong.found();
 }
 
+/// A device is there already, so that it is too late.
+ovc_result use_prepare_process(Subject&) {
+    return api().prepare_process(OVC_KERNEL_AUTO) == OVC_ERROR_INVALID_STATE ? OVC_OK
+                                                                             : OVC_ERROR_INTERNAL;
+}
+Misuses misuse_prepare_process(Subject& s) {
+    Wrong wrong(s);
+    wrong.without_device("kernel 3", api().prepare_process(ovc_kernel(3)));
+    return wrong.found();
+}
+
 ovc_result use_describe_device(Subject& s) {
     ovc_device_info info = sized<ovc_device_info>();
     const ovc_result result = api().describe_device(s.device, &info);
@@ -72,6 +83,7 @@ constexpr Entry kDeviceEntries[] = {
     OVC_ENTRY(last_error, use_last_error, nothing_wrong),
     OVC_ENTRY(list_devices, use_list_devices, misuse_list_devices),
     OVC_ENTRY(create_device, use_create_device, misuse_create_device),
+    OVC_ENTRY(prepare_process, use_prepare_process, misuse_prepare_process),
     OVC_ENTRY(describe_device, use_describe_device, misuse_describe_device),
     OVC_ENTRY(destroy_device, use_destroy_device, nothing_wrong),
 };

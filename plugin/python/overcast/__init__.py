@@ -32,9 +32,9 @@ from ._built import VERSION as __version__
 from ._library import Error, Result
 from ._query import Limits
 from ._rays import RAY, RAY_FLOAT, rays
-from .device import Device, DeviceInfo, devices
+from .device import Device, DeviceInfo, devices, prepare_process
 from .hits import HIT, Hits
 from .scene import Scene
 
-__all__ = ["Scene", "Hits", "Limits", "rays", "Device", "DeviceInfo", "devices", "Error", "Result",
-           "RAY", "RAY_FLOAT", "HIT", "NONE"]
+__all__ = ["Scene", "Hits", "Limits", "rays", "Device", "DeviceInfo", "devices", "prepare_process",
+           "Error", "Result", "RAY", "RAY_FLOAT", "HIT", "NONE"]

@@ -143,4 +143,5 @@ class ovc_api(c.Structure):
         ("update_instance", _call(_Handle, c.c_uint32, _Pointer)),
         ("remove_mesh", _call(_Handle, c.c_uint32)),
         ("save_streamed", _Pointer),
+        ("prepare_process", _call(c.c_int)),
     ]

@@ -55,6 +55,16 @@ def devices() -> list[DeviceInfo]:
     return [DeviceInfo._of(info) for info in infos[:count.value]]
 
 
+def prepare_process() -> None:
+    """Makes Mesa's software renderer as fast as it can be, should that become the device.
+
+    For programs that draw nothing by OpenGL themselves. Sets environment variables of the process
+    (LP_NATIVE_VECTOR_WIDTH, and one for Mesa's cache) unless you have set the first; call it before
+    the first device or scene, and before other threads. Raises Error afterwards.
+    """
+    check(api().prepare_process(0))
+
+
 class Device:
     """An open device, with a thread of its own: your OpenGL context is left alone.
 

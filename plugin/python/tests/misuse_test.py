@@ -3,6 +3,7 @@
 
 import logging
 import os
+import pathlib
 import signal
 import subprocess
 import sys
@@ -286,6 +287,19 @@ class Programs(unittest.TestCase):
                    "print(scene.intersect([1, 1, 1], [-1, -1, -1]).hit)")
         ended = self.run_program(program)
         self.assertEqual((ended.returncode, ended.stdout), (0, "True\n"), ended.stderr)
+
+    def test_a_process_is_prepared_for_the_software_renderer(self):
+        program = ("import overcast; overcast.prepare_process(); "
+                   "print(overcast.Device().info.renderer); overcast.prepare_process()")
+        environment = {name: value for name, value in os.environ.items()
+                       if name != "LP_NATIVE_VECTOR_WIDTH"}
+        ended = subprocess.run([sys.executable, "-c", program], env=environment,
+                               capture_output=True, text=True, timeout=120)
+        flags = pathlib.Path("/proc/cpuinfo").read_text(encoding="ascii").split()
+        if "llvmpipe" in ended.stdout and {"avx512f", "avx512dq", "avx512bw",
+                                           "avx512vl"}.issubset(flags):
+            self.assertIn("512 bits", ended.stdout)
+        self.assertIn("a device was listed or opened before", ended.stderr)
 
     def test_a_library_that_is_none_is_said_so(self):
         for library, sentence in {"/no/such.so": "cannot load the library: /no/such.so",

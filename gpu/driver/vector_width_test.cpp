@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/arguments/vector_width.h"
+#include "gpu/driver/vector_width.h"
 
 #include <gmock/gmock.h>
 
@@ -43,6 +43,19 @@ TEST(VectorWidth, HasAFolderOfItsOwnForWhatMesaKeeps) {
     EXPECT_EQ(
         wide({{"XDG_CACHE_HOME", "relative"}}),
         (Variables{{"LP_NATIVE_VECTOR_WIDTH", "512"}, {"MESA_SHADER_CACHE_DISABLE", "true"}}));
+}
+
+TEST(VectorWidth, IsAdvisedOnWhereNobodyHasChosen) {
+    const auto has_advice = [](const char* renderer, const char* width, bool has_avx512) {
+        const GetVariable variable = [&](const char*) { return width; };
+        return advice_on_vectors(renderer, variable, has_avx512).has_value();
+    };
+    const char* const narrow = "llvmpipe (LLVM 15.0.6, 256 bits)";
+    EXPECT_TRUE(has_advice(narrow, nullptr, true));
+    EXPECT_FALSE(has_advice(narrow, nullptr, false));
+    EXPECT_FALSE(has_advice(narrow, "256", true));
+    EXPECT_FALSE(has_advice("llvmpipe (LLVM 15.0.6, 512 bits)", nullptr, true));
+    EXPECT_FALSE(has_advice("NVIDIA H200", nullptr, true));
 }
 
 } // namespace

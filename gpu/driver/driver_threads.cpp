@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Finds threads in /proc and reads their clocks by the formula of pthread_getcpuclockid().
-#include "gpu/gl/driver_threads.h"
+#include "gpu/driver/driver_threads.h"
 
 #include <algorithm>
 #include <filesystem>
