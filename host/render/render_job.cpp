@@ -149,6 +149,10 @@ private:
             return report.error();
         frame.tracing = counted_between(begun.tracing, stage_.statistics());
         frame.active = backend_.take_active();
+        // The first of several ranks has the whole film, and makes an image of it, where the others
+        // have a part.
+        if (job_.render.ranks && !is_sequence() && !job_.aovs.any())
+            backend_.purge();
         frame.host_peak_bytes = host_peak_bytes();
         frame.seconds = watch.seconds(); // for the notes in its files
         const Stopwatch output;

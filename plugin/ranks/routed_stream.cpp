@@ -14,7 +14,8 @@ namespace ovc {
 /// there when another ends. More of them take more memory.
 static constexpr size_t kBatches = 4;
 /// A batch has so many rays a thread: with as many, messages and passes cost what their rays do.
-static constexpr size_t kRaysAThread = size_t(1) << 13, kMaxBatchRays = size_t(1) << 17;
+static constexpr size_t kRaysAThread = size_t(1) << 12, kFewRays = size_t(1) << 13,
+                        kMaxBatchRays = size_t(1) << 17;
 /// Fewer rays wait for others, while there is something to do.
 static constexpr size_t kMinBatchRays = size_t(1) << 12;
 
@@ -77,7 +78,7 @@ RoutedStream::RoutedStream(const Routing& ranks, RoutedCounts& counts, StreamHos
     : ranks_(ranks),
       counts_(counts),
       host_(host),
-      max_rays_(std::min(kRaysAThread * thread_count(), kMaxBatchRays)) {
+      max_rays_(std::clamp(kRaysAThread * thread_count(), kFewRays, kMaxBatchRays)) {
     for (size_t i = 0; i < kBatches; ++i)
         batches_.push_back(std::make_unique<Batch>(ranks, counts));
 }
