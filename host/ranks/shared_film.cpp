@@ -122,6 +122,15 @@ private:
             [&](uint32_t tile) { return owners_[tile] == rank && round_of_tile_[tile] == round; });
     }
 
+    /// Returns the same for each rank: for those that take no pixels of others, only their own.
+    std::vector<std::vector<uint32_t>> pixels_of_ranks(uint32_t round) const {
+        std::vector<std::vector<uint32_t>> pixels(ranks_.count());
+        for (uint32_t rank = 0; rank < ranks_.count(); ++rank)
+            if (ranks_.is_first() || rank == ranks_.rank())
+                pixels[rank] = pixels_of(rank, round);
+        return pixels;
+    }
+
     /// Returns the max number of a rank's pixels in a round; tiles at the film's sides count whole.
     size_t max_pixels_of(uint32_t round) const {
         std::vector<size_t> pixels(ranks_.count());
@@ -132,13 +141,12 @@ private:
     }
 
     Result<Done> run_round(uint32_t round) {
-        const std::vector<uint32_t> mine = pixels_of(ranks_.rank(), round);
-        const bool complete = trace(mine);
+        const bool complete = trace(pixels_of(ranks_.rank(), round));
         if (ranks_.is_first() && !complete) {
             report_.complete = false;
             return Done{};
         }
-        return exchange(round, mine, complete);
+        return exchange(round, complete);
     }
 
     /// Returns whether all of the pixels are done.
@@ -163,18 +171,20 @@ private:
     }
 
     /// Brings the pixels of all ranks to rank 0, and all of them to all ranks where these want
-    /// them. mine: those of this rank, complete or not. They go in parts, before each of which
+    /// them. complete: whether those of this rank are. They go in parts, before each of which
     /// rank 0 has taken the one before, so that it needs room for a part, however large the film.
-    Result<Done> exchange(uint32_t round, std::span<const uint32_t> mine, bool complete) {
+    Result<Done> exchange(uint32_t round, bool complete) {
         constexpr size_t kPartPixels = size_t(1) << 18; // of all ranks
         const size_t part = std::max<size_t>(kPartPixels / ranks_.count(), 1);
+        const auto pixels = pixels_of_ranks(round);
         const size_t max = max_pixels_of(round);
         for (size_t first = 0; first < max; first += part) {
-            const auto part_of = [&](std::span<const uint32_t> pixels) {
-                const size_t from = std::min(first, pixels.size());
-                return pixels.subspan(from, std::min(part, pixels.size() - from));
-            };
-            if (const Result<Done> taken = gather_part(round, part_of, mine, complete); !taken)
+            std::vector<std::span<const uint32_t>> parts;
+            for (const std::vector<uint32_t>& all : pixels) {
+                const size_t from = std::min(first, all.size());
+                parts.push_back(std::span(all).subspan(from, std::min(part, all.size() - from)));
+            }
+            if (const Result<Done> taken = gather_part(parts, complete); !taken)
                 return stop(taken.error());
             if (const Result<Done> told = tell_of_first({}, complete); !told)
                 return stop(told.error());
@@ -186,19 +196,15 @@ private:
         return told ? told : stop(told.error());
     }
 
-    /// Brings part_of() each rank's pixels to rank 0. complete: whether this rank's are; on rank 0,
+    /// Brings the pixels of each rank to rank 0. complete: whether this rank's are; on rank 0,
     /// whether those of all ranks are.
-    template <class PartOf>
-    Result<Done> gather_part(uint32_t round, PartOf&& part_of, std::span<const uint32_t> mine,
-                             bool& complete) {
-        const std::span<const uint32_t> told =
-            ranks_.is_first() ? std::span<const uint32_t>() : part_of(mine);
-        return ranks_.gather(PixelBytes::of(film_, told, complete), goes_on(),
+    Result<Done> gather_part(std::span<const std::span<const uint32_t>> pixels, bool& complete) {
+        const std::span<const uint32_t> mine =
+            ranks_.is_first() ? std::span<const uint32_t>() : pixels[ranks_.rank()];
+        return ranks_.gather(PixelBytes::of(film_, mine, complete), goes_on(),
                              [&](uint32_t rank, std::span<const std::byte> bytes) {
-                                 if (rank == 0)
-                                     return;
-                                 const std::vector<uint32_t> theirs = pixels_of(rank, round);
-                                 complete &= PixelBytes::restore(bytes, part_of(theirs), film_);
+                                 if (rank != 0)
+                                     complete &= PixelBytes::restore(bytes, pixels[rank], film_);
                              });
     }
 

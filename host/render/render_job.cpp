@@ -475,7 +475,8 @@ static std::vector<Ray> camera_sample(const RenderJob& job, const PicturePart& p
 
 /// Brings what all ranks have counted to the first one.
 static Result<Done> gather_ranks(const Ranks& ranks, RenderStats& stats) {
-    const RankStats mine{stats.tracing, stats.report.rays, host_peak_bytes()};
+    const RankStats mine{stats.tracing, stats.report.rays, host_peak_bytes(),
+                         stats.report.seconds_cpu};
     const auto all = ranks.gather(std::as_bytes(std::span(&mine, 1)), goes_on_always);
     if (!all)
         return all.error();
