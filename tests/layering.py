@@ -44,7 +44,8 @@ PARTS = {
     "plugin/two_level": {"plugin", "plugin/structure", "plugin/build", "plugin/plan",
                          "plugin/out_of_core", "plugin/leaf_store", "plugin/fallback"},
     "plugin/ranks": {"plugin", "plugin/abi", "plugin/structure", "plugin/build", "plugin/plan",
-                     "plugin/two_level"},
+                     "plugin/two_level", "plugin/ranks/transport"},
+    "plugin/ranks/transport": set(),
 }
 
 # Header pattern -> the files that may include such headers. Tests may include any.
@@ -61,7 +62,7 @@ PLACES = {
     r"png\.h": ["importers/png.cpp"],
     r"OpenImageIO/": ["textures/"],
     r"embree": ["host/backend/backend_embree.cpp"],
-    r"mpi\.h": ["plugin/ranks/mpi_transport.cpp", "plugin/examples/ranks.c"],
+    r"mpi\.h": ["plugin/ranks/transport/mpi_transport.cpp", "plugin/examples/ranks.c"],
     r"boost/": ["importers/csg/exact.h"],
     r"tachyon\.h": ["plugin/hosts/tachyon/tachyon_triangle.h"],
     r"(gtest|gmock)/": [],

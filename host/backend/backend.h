@@ -56,6 +56,9 @@ public:
     /// Returns the pages that rays went through since the last call; none where the options did not
     /// ask for them or the backend cannot tell.
     virtual std::optional<ovc_active> take_active() { return {}; }
+    /// Gives back GPU memory, and what host memory only serves speed, until rays are traced again;
+    /// not where the backend cannot.
+    virtual void purge() {}
     /// Returns for each ray the rank whose leaves it comes by first, of those that no other rank
     /// has, or kNone; nothing where ranks do not share a scene out.
     virtual std::vector<uint32_t> first_ranks(std::span<const Ray>) const { return {}; }

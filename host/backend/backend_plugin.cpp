@@ -282,6 +282,8 @@ public:
         return api().active(scene_.get(), &active) == OVC_OK ? std::optional(active) : std::nullopt;
     }
 
+    void purge() override { (void)api().purge(scene_.get()); }
+
     std::vector<uint32_t> first_ranks(std::span<const Ray> rays) const override {
         const Ranks* const ranks = Ranks::of_run();
         return ranks && is_two_level_ ? ranks->first_ranks(scene_.get(), rays)

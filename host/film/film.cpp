@@ -20,28 +20,36 @@ static int64_t fixed(float light) {
                           : 0;
 }
 
+/// Returns how many pieces of 2^bits pixels cover so many.
+static uint32_t pieces_of(uint32_t pixels, uint32_t bits) {
+    return uint32_t((uint64_t(pixels) + (1u << bits) - 1) >> bits);
+}
+
 Film::Film(uint32_t width, uint32_t height, uint32_t samples)
     : width_(width),
       height_(height),
       samples_(samples),
-      sums_(size_t(width) * height),
-      under_way_(size_t(width) * height) {
-    assert(samples > 0);
-    for (std::atomic<uint32_t>& rays : under_way_)
-        rays.store(samples, std::memory_order_relaxed);
+      across_bits_(height > 1 ? kTileBits / 2 : kTileBits), // pixels of a single row are points
+      columns_(pieces_of(width, across_bits_)),
+      rows_(pieces_of(height, kTileBits - across_bits_)),
+      tiles_(map_pages(size_t(columns_) * rows_ * sizeof(Tile))) {
+    assert(width > 0 && height > 0 && samples > 0);
 }
 
 void Film::add(uint32_t pixel, const vec3& light) {
-    assert(pixel < sums_.size());
+    const Place at = place(pixel);
+    Sums& sums = at.tile.sums[at.pixel];
     for (int channel = 0; channel < 3; ++channel)
         if (light[channel] != 0)
-            sums_[pixel][size_t(channel)].fetch_add(fixed(light[channel]),
-                                                    std::memory_order_relaxed);
+            std::atomic_ref(sums[size_t(channel)])
+                .fetch_add(fixed(light[channel]), std::memory_order_relaxed);
 }
 
 Film::Sums Film::sums(uint32_t pixel) const {
-    const auto& sum = sums_[pixel];
-    const auto of = [&](size_t channel) { return sum[channel].load(std::memory_order_relaxed); };
+    const Place at = place(pixel);
+    const auto of = [&](size_t channel) {
+        return std::atomic_ref(at.tile.sums[at.pixel][channel]).load(std::memory_order_relaxed);
+    };
     return {of(0), of(1), of(2)};
 }
 
@@ -54,12 +62,13 @@ void Film::restore(std::span<const uint32_t> pixels, std::span<const Sums> sums)
     parallel_for(pixels.size(), 4096, [&](size_t first, size_t last) {
         uint64_t done_now = 0;
         for (size_t i = first; i < last; ++i) {
-            assert(pixels[i] < sums_.size());
+            const Place at = place(pixels[i]);
             for (size_t channel = 0; channel < 3; ++channel)
-                sums_[pixels[i]][channel].store(sums[i][channel], std::memory_order_relaxed);
-            std::atomic<uint32_t>& under_way = under_way_[pixels[i]];
-            done_now += under_way.load(std::memory_order_relaxed) != 0;
-            under_way.store(0, std::memory_order_release);
+                std::atomic_ref(at.tile.sums[at.pixel][channel])
+                    .store(sums[i][channel], std::memory_order_relaxed);
+            const std::atomic_ref<uint32_t> rays(at.tile.answered[at.pixel]);
+            done_now += rays.load(std::memory_order_relaxed) != samples_;
+            rays.store(samples_, std::memory_order_release);
         }
         done_.fetch_add(done_now, std::memory_order_relaxed);
     });
@@ -71,9 +80,9 @@ Image Film::image() const {
     parallel_for(image.pixels.size(), 4096, [&](size_t first, size_t last) {
         for (size_t i = first; i < last; ++i)
             if (done(uint32_t(i))) {
-                const Sums sum = sums(uint32_t(i));
-                image.pixels[i] =
-                    vec4(vec3(scale * dvec3(double(sum[0]), double(sum[1]), double(sum[2]))), 1);
+                const Sums light = sums(uint32_t(i));
+                image.pixels[i] = vec4(
+                    vec3(scale * dvec3(double(light[0]), double(light[1]), double(light[2]))), 1);
             }
     });
     return image;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "core/file/image.h"
+#include "core/system/system_pages.h"
 
 #include <array>
 #include <atomic>
@@ -11,13 +12,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 namespace ovc {
 
 class Film {
 public:
-    /// samples: camera rays a pixel, at least 1.
+    /// samples: camera rays a pixel, at least 1. Memory is taken tile by tile, as their pixels are
+    /// written, so that a film of which a process renders some tiles takes little more.
     Film(uint32_t width, uint32_t height, uint32_t samples = 1);
 
     uint32_t width() const { return width_; }
@@ -30,17 +31,17 @@ public:
 
     /// Counts more rays of the pixel as under way. Its camera rays are counted from the start.
     void open(uint32_t pixel, uint32_t rays = 1) {
-        under_way_[pixel].fetch_add(rays, std::memory_order_relaxed);
+        answered(pixel).fetch_sub(rays, std::memory_order_relaxed);
     }
     /// Counts one ray of the pixel as answered. Open the rays that it spawned before.
     void close(uint32_t pixel) {
         assert(!done(pixel));
-        if (under_way_[pixel].fetch_sub(1, std::memory_order_acq_rel) == 1)
+        if (answered(pixel).fetch_add(1, std::memory_order_acq_rel) + 1 == samples_)
             done_.fetch_add(1, std::memory_order_relaxed);
     }
 
     bool done(uint32_t pixel) const {
-        return under_way_[pixel].load(std::memory_order_acquire) == 0;
+        return answered(pixel).load(std::memory_order_acquire) == samples_;
     }
     uint64_t pixels_done() const { return done_.load(std::memory_order_relaxed); }
 
@@ -57,10 +58,38 @@ public:
     Image image() const;
 
 private:
-    uint32_t width_, height_, samples_;
-    std::vector<std::array<std::atomic<int64_t>, 3>> sums_;
-    std::vector<std::atomic<uint32_t>> under_way_; // rays of each pixel
-    std::atomic<uint64_t> done_{0};                // pixels
+    static constexpr uint32_t kTileBits = 8, kTilePixels = 1 << kTileBits;
+    struct Tile {
+        std::array<Sums, kTilePixels> sums;
+        /// How many more of a pixel's rays were answered than opened: samples() once it is done. It
+        /// begins at 0, so that nothing has to be written before.
+        std::array<uint32_t, kTilePixels> answered;
+    };
+    struct Place {
+        Tile& tile;
+        uint32_t pixel; // of the tile
+    };
+    Place place(uint32_t pixel) const;
+
+    std::atomic_ref<uint32_t> answered(uint32_t pixel) const {
+        const Place at = place(pixel);
+        return std::atomic_ref(at.tile.answered[at.pixel]);
+    }
+
+    const uint32_t width_, height_, samples_;
+    const uint32_t across_bits_;    // a tile is 2^across_bits_ pixels wide
+    const uint32_t columns_, rows_; // of tiles
+    const SystemPages tiles_;
+    std::atomic<uint64_t> done_{0}; // pixels
 };
+
+inline Film::Place Film::place(uint32_t pixel) const {
+    assert(pixel < size_t(width_) * height_);
+    const uint32_t x = pixel % width_, y = pixel / width_;
+    const uint32_t down_bits = kTileBits - across_bits_;
+    Tile* const tiles = static_cast<Tile*>(tiles_.get());
+    return {tiles[size_t(y >> down_bits) * columns_ + (x >> across_bits_)],
+            (y & ((1u << down_bits) - 1)) << across_bits_ | (x & ((1u << across_bits_) - 1))};
+}
 
 } // namespace ovc

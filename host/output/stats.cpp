@@ -160,7 +160,10 @@ static Json ranks_of(const RenderStats& s) {
                          {"bytes_sent", t.bytes_sent},
                          {"bytes_received", t.bytes_received},
                          {"disk_bytes", t.disk_bytes},
-                         {"time", {{"trace", t.seconds_trace}, {"waiting", t.seconds_waiting}}}});
+                         {"time",
+                          {{"trace", t.seconds_trace},
+                           {"waiting", t.seconds_waiting},
+                           {"cpu", s.ranks[i].seconds_cpu}}}});
     }
     return ranks;
 }

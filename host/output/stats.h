@@ -38,6 +38,7 @@ struct RankStats {
     ovc_statistics tracing{};
     RayCounts rays;
     uint64_t host_peak_bytes = 0;
+    double seconds_cpu = 0;
 
     /// Returns the time in which it traced rays, its own or those of others.
     double seconds_busy() const { return tracing.seconds_trace - tracing.seconds_waiting; }

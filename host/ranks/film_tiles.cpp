@@ -12,8 +12,11 @@
 
 namespace ovc {
 
-static constexpr uint32_t kTileSide = 16,
-                          kTileRun = 256; // of films of one row, whose pixels are points
+static constexpr uint32_t
+    kTileSide = 16,
+    kTileRun = FilmTiles::kTilePixels; // of films of one row, whose pixels are points
+
+static_assert(kTileSide * kTileSide == FilmTiles::kTilePixels);
 
 static uint32_t parts_of(uint32_t length, uint32_t part) {
     return (length + part - 1) / part;

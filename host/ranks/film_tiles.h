@@ -18,6 +18,8 @@ using FirstRanks = std::function<std::vector<uint32_t>(std::span<const uint32_t>
 /// Tiles of neighbouring pixels, whose rays go the same way.
 class FilmTiles {
 public:
+    static constexpr uint32_t kTilePixels = 256; // fewer at the film's right and lower side
+
     FilmTiles(uint32_t width, uint32_t height);
 
     uint32_t count() const { return columns_ * rows_; }

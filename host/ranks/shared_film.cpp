@@ -6,6 +6,8 @@
 #include "core/system/stopwatch.h"
 #include "host/terminal/message.h"
 
+#include <malloc.h>
+
 #include <algorithm>
 #include <cassert>
 #include <cstring>
@@ -120,14 +122,31 @@ private:
             [&](uint32_t tile) { return owners_[tile] == rank && round_of_tile_[tile] == round; });
     }
 
+    /// Returns the same for each rank: for those that take no pixels of others, only their own.
+    std::vector<std::vector<uint32_t>> pixels_of_ranks(uint32_t round) const {
+        std::vector<std::vector<uint32_t>> pixels(ranks_.count());
+        for (uint32_t rank = 0; rank < ranks_.count(); ++rank)
+            if (ranks_.is_first() || rank == ranks_.rank())
+                pixels[rank] = pixels_of(rank, round);
+        return pixels;
+    }
+
+    /// Returns the max number of a rank's pixels in a round; tiles at the film's sides count whole.
+    size_t max_pixels_of(uint32_t round) const {
+        std::vector<size_t> pixels(ranks_.count());
+        for (uint32_t tile = 0; tile < tiles_.count(); ++tile)
+            if (round_of_tile_[tile] == round)
+                pixels[owners_[tile]] += FilmTiles::kTilePixels;
+        return *std::ranges::max_element(pixels);
+    }
+
     Result<Done> run_round(uint32_t round) {
-        const std::vector<uint32_t> mine = pixels_of(ranks_.rank(), round);
-        const bool complete = trace(mine);
+        const bool complete = trace(pixels_of(ranks_.rank(), round));
         if (ranks_.is_first() && !complete) {
             report_.complete = false;
             return Done{};
         }
-        return exchange(round, mine, complete);
+        return exchange(round, complete);
     }
 
     /// Returns whether all of the pixels are done.
@@ -146,32 +165,56 @@ private:
             return false;
         }
         report_ += *done;
+        // Rays took memory that films of other ranks, on their way, take next.
+        malloc_trim(0);
         return done->complete;
     }
 
     /// Brings the pixels of all ranks to rank 0, and all of them to all ranks where these want
-    /// them. mine: those of this rank, complete or not.
-    Result<Done> exchange(uint32_t round, std::span<const uint32_t> mine, bool complete) {
-        const bool is_first = ranks_.is_first();
-        const std::span<const uint32_t> told = is_first ? std::span<const uint32_t>() : mine;
-        const Result<Done> gathered =
-            ranks_.gather(PixelBytes::of(film_, told, complete), goes_on(),
-                          [&](uint32_t rank, std::span<const std::byte> bytes) {
-                              if (rank != 0)
-                                  complete &=
-                                      PixelBytes::restore(bytes, pixels_of(rank, round), film_);
-                          });
-        if (!gathered)
-            return stop(gathered.error());
-        const std::vector<uint32_t> for_all =
-            options_.to_all
-                ? tiles_.pixels([&](uint32_t tile) { return round_of_tile_[tile] == round; })
-                : std::vector<uint32_t>();
+    /// them. complete: whether those of this rank are. They go in parts, before each of which
+    /// rank 0 has taken the one before, so that it needs room for a part, however large the film.
+    Result<Done> exchange(uint32_t round, bool complete) {
+        constexpr size_t kPartPixels = size_t(1) << 18; // of all ranks
+        const size_t part = std::max<size_t>(kPartPixels / ranks_.count(), 1);
+        const auto pixels = pixels_of_ranks(round);
+        const size_t max = max_pixels_of(round);
+        for (size_t first = 0; first < max; first += part) {
+            std::vector<std::span<const uint32_t>> parts;
+            for (const std::vector<uint32_t>& all : pixels) {
+                const size_t from = std::min(first, all.size());
+                parts.push_back(std::span(all).subspan(from, std::min(part, all.size() - from)));
+            }
+            if (const Result<Done> taken = gather_part(parts, complete); !taken)
+                return stop(taken.error());
+            if (const Result<Done> told = tell_of_first({}, complete); !told)
+                return stop(told.error());
+        }
+        if (!options_.to_all || !report_.complete)
+            return Done{};
+        const Result<Done> told = tell_of_first(
+            tiles_.pixels([&](uint32_t tile) { return round_of_tile_[tile] == round; }), complete);
+        return told ? told : stop(told.error());
+    }
+
+    /// Brings the pixels of each rank to rank 0. complete: whether this rank's are; on rank 0,
+    /// whether those of all ranks are.
+    Result<Done> gather_part(std::span<const std::span<const uint32_t>> pixels, bool& complete) {
+        const std::span<const uint32_t> mine =
+            ranks_.is_first() ? std::span<const uint32_t>() : pixels[ranks_.rank()];
+        return ranks_.gather(PixelBytes::of(film_, mine, complete), goes_on(),
+                             [&](uint32_t rank, std::span<const std::byte> bytes) {
+                                 if (rank != 0)
+                                     complete &= PixelBytes::restore(bytes, pixels[rank], film_);
+                             });
+    }
+
+    /// Brings these pixels of rank 0 to all ranks, and whether all are complete.
+    Result<Done> tell_of_first(std::span<const uint32_t> pixels, bool complete) {
         const Result<RankBytes> spread = ranks_.spread(
-            is_first ? PixelBytes::of(film_, for_all, complete) : RankBytes(), goes_on());
+            ranks_.is_first() ? PixelBytes::of(film_, pixels, complete) : RankBytes(), goes_on());
         if (!spread)
-            return stop(spread.error());
-        report_.complete = PixelBytes::restore(*spread, for_all, film_);
+            return spread.error();
+        report_.complete = PixelBytes::restore(*spread, pixels, film_);
         return Done{};
     }
 

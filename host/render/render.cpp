@@ -147,12 +147,13 @@ Result<RenderReport> render_picture(const Scene& scene, const Camera& camera, Ba
     const std::unique_ptr<Integrator> integrator = make_integrator(scene, camera, options);
     const Sight sight(scene, options.cutouts);
     const size_t lights = scene.lights.size();
-    const bool waits_for_ranks = options.ranks && backend.statistics().ranks > 1;
+    // Where rays visit other ranks, a batch would wait at its end for its last answers.
+    const bool as_stream =
+        options.mode == RenderMode::Mixed || (options.ranks && backend.statistics().ranks > 1);
     const auto trace = [&](const CameraRays& rays, const RenderObserver& watch_it, Film& to) {
-        return options.mode == RenderMode::Mixed
-                   ? render_mixed(*integrator, lights, rays, sight, backend, watch_it, to)
-                   : render_batched(*integrator, lights, rays, sight, backend, options.batch_rays,
-                                    watch_it, to, waits_for_ranks);
+        return as_stream ? render_mixed(*integrator, lights, rays, sight, backend, watch_it, to)
+                         : render_batched(*integrator, lights, rays, sight, backend,
+                                          options.batch_rays, watch_it, to);
     };
     // Ranks share out the pixels of a film; else all of them are this process's.
     const uint32_t rays_per_sample = // a guess

@@ -21,9 +21,6 @@ namespace {
 /// picture has a minimum of batches, or a lane would have nothing to do while the other traces.
 constexpr uint64_t kRaysACore = 1 << 14;
 constexpr uint64_t kMinBatches = 8;
-/// A call that waits for other ranks is longer, and another lane shades meanwhile, on however few
-/// threads.
-constexpr uint64_t kRaysACoreAmongRanks = 1 << 15;
 
 /// The state that both lanes share: the camera's rays, and the backend, which answers one call at a
 /// time.
@@ -207,13 +204,11 @@ private:
 
 Result<RenderReport> render_batched(const Integrator& integrator, size_t lights,
                                     const CameraRays& camera, const Sight& sight, Backend& backend,
-                                    size_t batch_rays, const RenderObserver& observe, Film& film,
-                                    bool waits_for_ranks) {
-    const uint64_t a_core = waits_for_ranks ? kRaysACoreAmongRanks : kRaysACore;
-    const uint64_t wanted = std::min(camera.size() / kMinBatches + 1, a_core * thread_count());
+                                    size_t batch_rays, const RenderObserver& observe, Film& film) {
+    const uint64_t wanted = std::min(camera.size() / kMinBatches + 1, kRaysACore * thread_count());
     const size_t batch = size_t(std::min<uint64_t>(batch_rays, wanted));
     Work work(camera, sight, backend, observe, film);
-    std::vector<std::future<void>> lanes(thread_count() == 1 && !waits_for_ranks ? 1 : 2);
+    std::vector<std::future<void>> lanes(thread_count() == 1 ? 1 : 2);
     for (std::future<void>& lane : lanes)
         lane = std::async(std::launch::async,
                           [&] { Lane(work, integrator, lights, batch, film).run(); });

@@ -10,12 +10,10 @@
 namespace ovc {
 
 /// Renders the camera's rays onto the film. lights: the number of lights, each of which may ask for
-/// a shadow ray at every hit. batch_rays: at least 1. waits_for_ranks: the backend waits for
-/// others, so that one call at least should be under way while rays are shaded. The report lacks
-/// `seconds` and `seconds_cpu`.
+/// a shadow ray at every hit. batch_rays: at least 1. The report lacks `seconds` and
+/// `seconds_cpu`.
 Result<RenderReport> render_batched(const Integrator& integrator, size_t lights,
                                     const CameraRays& camera, const Sight& sight, Backend& backend,
-                                    size_t batch_rays, const RenderObserver& observe, Film& film,
-                                    bool waits_for_ranks = false);
+                                    size_t batch_rays, const RenderObserver& observe, Film& film);
 
 } // namespace ovc

@@ -148,6 +148,10 @@ private:
             return report.error();
         frame.tracing = counted_between(begun.tracing, stage_.statistics());
         frame.active = backend_.take_active();
+        // The first of several ranks has the whole film, and makes an image of it, where the others
+        // have a part.
+        if (job_.render.ranks && !is_sequence() && !job_.aovs.any())
+            backend_.purge();
         frame.host_peak_bytes = host_peak_bytes();
         frame.seconds = watch.seconds(); // for the notes in its files
         const Stopwatch output;
@@ -470,7 +474,8 @@ static std::vector<Ray> camera_sample(const RenderJob& job, const PicturePart& p
 
 /// Brings what all ranks have counted to the first one.
 static Result<Done> gather_ranks(const Ranks& ranks, RenderStats& stats) {
-    const RankStats mine{stats.tracing, stats.report.rays, host_peak_bytes()};
+    const RankStats mine{stats.tracing, stats.report.rays, host_peak_bytes(),
+                         stats.report.seconds_cpu};
     const auto all = ranks.gather(std::as_bytes(std::span(&mine, 1)), goes_on_always);
     if (!all)
         return all.error();

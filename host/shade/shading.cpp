@@ -12,11 +12,15 @@ namespace ovc {
 static constexpr size_t kBlock = 256;         // answers a task, whose rays fit a cache
 static constexpr size_t kShadingGrain = 1024; // rays a task that only copies or adds up
 static constexpr size_t kMaxAnswers = size_t(1) << 16;
+/// So many blocks a thread at once keep all threads at work; the rays of blocks lie in memory
+/// twice.
+static constexpr size_t kBlocksAThread = 32;
 static constexpr size_t kMaxSpawned = size_t(1) << 18;
 
 Shading::Shading(const Integrator& integrator, size_t lights, Film& film)
     : integrator_(integrator),
-      max_answers_(std::clamp(kMaxSpawned / (lights + 2), kBlock, kMaxAnswers)),
+      max_answers_(std::clamp(kMaxSpawned / (lights + 2), kBlock,
+                              std::min(kMaxAnswers, kBlocksAThread * kBlock * thread_count()))),
       film_(film) {}
 
 /// Appends the lists in their order.

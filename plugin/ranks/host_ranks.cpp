@@ -4,8 +4,8 @@
 
 #include "plugin/abi/ray_call.h"
 #include "plugin/abi/scene_call.h"
-#include "plugin/ranks/mpi_transport.h"
-#include "plugin/ranks/notes.h"
+#include "plugin/ranks/transport/mpi_transport.h"
+#include "plugin/ranks/transport/notes.h"
 
 #include <cstdlib>
 #include <exception>

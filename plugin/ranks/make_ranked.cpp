@@ -2,10 +2,10 @@
 // The structure of libovercast-mpi.so: two-level, whose pages are shared out between ranks where
 // they do not fit, or where the config says so.
 #include "core/text/format_text.h"
-#include "plugin/ranks/mpi_transport.h"
-#include "plugin/ranks/notes.h"
 #include "plugin/ranks/ranked_scene.h"
 #include "plugin/ranks/sharing.h"
+#include "plugin/ranks/transport/mpi_transport.h"
+#include "plugin/ranks/transport/notes.h"
 #include "plugin/structure/failure.h"
 #include "plugin/two_level/make_two_level.h"
 #include "plugin/two_level/two_level.h"

@@ -4,6 +4,7 @@
 
 #include "core/system/parallel.h"
 #include "core/system/stopwatch.h"
+#include "plugin/ranks/routed_stream.h"
 
 #include <algorithm>
 #include <cassert>
@@ -16,10 +17,36 @@ RankedScene::RankedScene(const Soup& soup, RankedParts parts)
       server_(*parts_.local, *parts_.transport, parts_.threads),
       routing_{soup, parts_.certified, *parts_.finder, *parts_.transport,
                [this] { return server_.is_idle(); }},
-      routed_(routing_, watch_) {}
+      routed_(parts_.transport->ranks()),
+      call_(routing_, routed_) {}
 
 RankedScene::~RankedScene() {
     parts_.transport->close();
+}
+
+Result<Done> RankedScene::run(const RoutedRays& rays) {
+    call_.begin(rays);
+    Result<Done> done = wait_for_call();
+    if (!done)
+        call_.give_up();
+    return done;
+}
+
+Result<Done> RankedScene::wait_for_call() {
+    RoutedCall* const calls[] = {&call_};
+    const auto take = [&](int milliseconds) {
+        return take_answers(routing_, routed_, calls, std::chrono::milliseconds(milliseconds));
+    };
+    while (call_.find_stops())
+        if (const Result<Done> done = take(0); !done)
+            return done;
+    while (!call_.is_done()) {
+        if (const Result<Done> done = take(50); !done)
+            return done;
+        if (const Result<Done> done = watch_.go_on(call_.done(), call_.count()); !done)
+            return done;
+    }
+    return Done{};
 }
 
 Result<Done> RankedScene::route(RaySpan rays, const Exclusions& without, std::span<Hit> hits,
@@ -33,7 +60,7 @@ Result<Done> RankedScene::route(RaySpan rays, const Exclusions& without, std::sp
                               hits.empty() ? hits : hits.subspan(first, count),
                               occluded.empty() ? occluded : occluded.subspan(first, count)};
         watch_.begin_part(part, parts);
-        if (const Result<Done> done = routed_.run(some); !done)
+        if (const Result<Done> done = run(some); !done)
             return done;
     }
     return watch_.unless_cancelled();
@@ -68,31 +95,6 @@ struct GoingOn {
     }
 };
 
-/// Returns those of the rays whose hits their filters drop; nothing where one stops the call.
-std::optional<std::vector<uint32_t>> dropped(std::span<const uint32_t> rays, const Sieves& sieves,
-                                             std::span<const Hit> hits) {
-    std::vector<uint32_t> out;
-    for (size_t first = 0; first < rays.size();) {
-        HitFilter* const filter = sieves[rays[first]].filter;
-        std::vector<uint32_t> asked;
-        std::vector<uint64_t> names;
-        std::vector<Hit> found;
-        for (; first < rays.size() && sieves[rays[first]].filter == filter; ++first)
-            if (const uint32_t i = rays[first]; filter && hits[i].is_hit()) {
-                asked.push_back(i);
-                names.push_back(sieves[i].name);
-                found.push_back(hits[i]);
-            }
-        std::vector<uint8_t> keep(asked.size(), 1);
-        if (!asked.empty() && !filter->keep(names, found, keep))
-            return std::nullopt;
-        for (size_t i = 0; i < asked.size(); ++i)
-            if (!keep[i])
-                out.push_back(asked[i]);
-    }
-    return out;
-}
-
 } // namespace
 
 /// Answers rays whose exclusions may have filters, which are asked here, at home.
@@ -105,7 +107,7 @@ Result<Done> RankedScene::nearest(RaySpan rays, const Exclusions& without, std::
     std::vector<uint32_t> asked(rays.size());
     std::iota(asked.begin(), asked.end(), 0u);
     while (true) {
-        auto further = dropped(asked, without.sieves, hits);
+        auto further = dropped_hits(asked, without.sieves, hits);
         if (!further)
             return Error{"the filter stopped the call", ErrorKind::Cancelled};
         if (further->empty())
@@ -184,6 +186,17 @@ Result<Done> RankedScene::all_hits(RaySpan rays, const Exclusions& without, cons
     return done;
 }
 
+Result<Done> RankedScene::stream(StreamHost& host) {
+    const Stopwatch watch;
+    watch_.begin_call();
+    RoutedStream stream(routing_, routed_, host);
+    const Result<Done> done = stream.run();
+    counted_.nearest_rays += stream.nearest_rays();
+    counted_.occlusion_rays += stream.occlusion_rays();
+    counted_.seconds_trace += watch.seconds() - stream.seconds_host();
+    return done;
+}
+
 void RankedScene::first_ranks(RaySpan rays, std::span<uint32_t> ranks) const {
     parallel_for(ranks.size(), 256, [&](size_t first, size_t last) {
         for (size_t i = first; i < last; ++i)
@@ -203,12 +216,12 @@ ovc_statistics RankedScene::report() const {
     told.nearest_rays = counted_.nearest_rays;
     told.occlusion_rays = counted_.occlusion_rays;
     told.seconds_trace = counted_.seconds_trace;
-    told.rays_sent = routed_.visits_elsewhere();
+    told.rays_sent = routed_.visits_elsewhere;
     told.rays_served = server_.served();
     const TransportCounts transport = parts_.transport->counts();
     told.bytes_sent = transport.bytes_sent;
     told.bytes_received = transport.bytes_received;
-    told.seconds_waiting = routed_.seconds_waiting();
+    told.seconds_waiting = routed_.seconds_waiting;
     return told;
 }
 

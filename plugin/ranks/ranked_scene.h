@@ -4,7 +4,7 @@
 #pragma once
 
 #include "plugin/ranks/routed_call.h"
-#include "plugin/ranks/transport.h"
+#include "plugin/ranks/transport/transport.h"
 #include "plugin/ranks/visit_server.h"
 #include "plugin/structure/structure.h"
 
@@ -33,6 +33,7 @@ public:
     Result<Done> intersect(RaySpan rays, const Exclusions& without, std::span<Hit> hits) override;
     Result<Done> occluded(RaySpan rays, const Exclusions& without,
                           std::span<uint8_t> occluded) override;
+    Result<Done> stream(StreamHost& host) override;
     bool takes_after() const override { return true; }
     Result<Done> all_hits(RaySpan rays, const Exclusions& without, const AllHits& all) override;
     void first_ranks(RaySpan rays, std::span<uint32_t> ranks) const override;
@@ -40,6 +41,8 @@ public:
     ovc_statistics report() const override;
 
 private:
+    Result<Done> run(const RoutedRays& rays);
+    Result<Done> wait_for_call();
     Result<Done> route(RaySpan rays, const Exclusions& without, std::span<Hit> hits,
                        std::span<uint8_t> occluded);
     Result<Done> nearest(RaySpan rays, const Exclusions& without, std::span<Hit> hits);
@@ -48,7 +51,8 @@ private:
     mutable VisitServer server_;
     const Routing routing_;
     ovc_statistics counted_{sizeof(ovc_statistics)}; // of calls on this rank
-    RoutedCall routed_;                              // takes one call after the other
+    RoutedCounts routed_;
+    RoutedCall call_; // of batches, one after the other
 };
 
 } // namespace ovc

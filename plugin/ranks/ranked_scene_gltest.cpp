@@ -2,8 +2,8 @@
 // Ranks that share a scene out answer bit for bit what one process answers, whoever asks.
 #include "plugin/ranks/ranked_scene.h"
 
-#include "plugin/ranks/memory_transport.h"
 #include "plugin/ranks/sharing.h"
+#include "plugin/ranks/transport/memory_transport.h"
 #include "plugin/two_level/test_two_level.h"
 
 #include <algorithm>
@@ -198,6 +198,43 @@ TEST_F(RankedGl, KnowsWhatCounts) {
                 ASSERT_TRUE(test::same(some_hits[i], many[i])) << i;
         });
     }
+    end(ranks);
+}
+
+TEST_F(RankedGl, AnswersAStreamAsOneProcessDoes) {
+    const Soup soup = instances();
+    const auto rays = test::rays_from_outside(54, 30'000);
+    const auto alone = build(soup, {.leaf_triangles = 100});
+    auto ranks = make(soup, 3, {.leaf_triangles = 100});
+    ASSERT_TRUE(alone);
+    ASSERT_EQ(ranks.size(), 3u);
+    SomePrims some;
+    HitFilter* filter = &some;
+    for (const bool filtered : {false, true}) {
+        test::Spawner expected(rays, 5000);
+        if (filtered)
+            expected.filters = {&filter, 1};
+        ASSERT_TRUE(ok(alone->stream(expected)));
+        on_all(ranks, [&](size_t i, RankedScene& scene) {
+            test::Spawner host(rays, 7000 * i + 100);
+            host.filters = expected.filters;
+            ASSERT_TRUE(ok(scene.stream(host)));
+            EXPECT_EQ(host.blocked, expected.blocked);
+            for (size_t ray = 0; ray < rays.size(); ++ray)
+                ASSERT_TRUE(test::same(host.hits_of[ray], expected.hits_of[ray])) << ray;
+        });
+    }
+    EXPECT_GE(ranks[0].scene->report().nearest_rays, 2 * rays.size());
+    test::Spawner stopped(rays, 5000);
+    stopped.stop_after = 1;
+    const Result<Done> done = ranks[0].scene->stream(stopped);
+    ASSERT_FALSE(done);
+    EXPECT_EQ(done.error().kind, ErrorKind::Cancelled);
+    // What it has left on its way disturbs no call after it.
+    on_all(ranks, [&](size_t, RankedScene& scene) {
+        test::expect_answers(scene, std::span(rays).first(200),
+                             test::brute_force(soup, std::span(rays).first(200)));
+    });
     end(ranks);
 }
 

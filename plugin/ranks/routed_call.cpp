@@ -13,6 +13,7 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace ovc {
 namespace {
@@ -25,53 +26,52 @@ constexpr size_t kMaxMessage = size_t(1) << 14, kMinMessage = size_t(1) << 12;
 
 constexpr size_t kCopyGrain = 2048; // rays a task that only copies
 
-/// How many rays of a rank are at another one at once. All ranks may send theirs to the same one,
-/// whose memory for them this bounds: 24 MiB for two ranks, 48 MiB for many, and beyond 128 of them
-/// 400 KiB for each. With fewer, ranks wait for each other's batches.
+/// How many rays of a rank are at another one at once, those of all calls together. All ranks may
+/// send theirs to the same one, whose memory for them this bounds: 24 MiB for two ranks, 48 MiB for
+/// many, and beyond 128 of them 400 KiB for each. With fewer, ranks wait for each other's batches.
 size_t max_away(uint32_t ranks) {
     return std::clamp<size_t>((size_t(1) << 19) / ranks, size_t(1) << 12, size_t(1) << 18);
 }
 
 } // namespace
 
+void RoutedCall::give_up() {
+    for (uint32_t rank = 0; rank < outgoing_.size(); ++rank)
+        counts_.away[rank] -= std::exchange(outgoing_[rank].away, 0);
+}
+
 void RoutedCall::begin(const RoutedRays& rays) {
     assert(rays.rays.size() <= RoutedRays::kMaxRays);
     assert(rays.hits.empty() || rays.occluded.empty());
     constexpr size_t kKeptRays = size_t(1) << 18;
+    give_up();
     if (count() > kKeptRays)
         blocks_ = {}, next_ = {}, end_ = {};
     rays_ = rays;
-    ++call_; // what comes for an earlier one, which was given up, is not taken
+    call_ = counts_.calls++;
+    next_block_ = 0;
     std::ranges::fill(rays_.hits, Hit());
     std::ranges::fill(rays_.occluded, uint8_t(0));
     blocks_.resize(std::max(blocks_.size(), (count() + kBlock - 1) / kBlock));
     next_.resize(count());
     end_.resize(count());
     for (Outgoing& outgoing : outgoing_)
-        outgoing.waiting.clear(), outgoing.away = 0;
+        outgoing.waiting.clear();
     answered_.clear();
     for (uint32_t number = 0; number < sent_.size(); ++number)
         answered_.push_back(number);
     done_ = 0;
 }
 
-Result<Done> RoutedCall::run(const RoutedRays& rays) {
-    begin(rays);
+bool RoutedCall::find_stops() {
     const size_t blocks = (count() + kBlock - 1) / kBlock;
-    const size_t at_once = thread_count();
-    for (size_t first = 0; first < blocks; first += at_once) {
-        begin_blocks(first, std::min(first + at_once, blocks));
-        send_off(kMinMessage);
-        if (const Result<Done> done = take_answers(std::chrono::milliseconds(0)); !done)
-            return done;
-    }
-    send_off(1);
-    while (done_ < count()) {
-        if (const Result<Done> done = wait(); !done)
-            return done;
-        send_off(1);
-    }
-    return Done{};
+    if (next_block_ == blocks)
+        return false;
+    const size_t first = next_block_;
+    next_block_ = std::min(blocks, first + thread_count());
+    begin_blocks(first, next_block_);
+    send_off(next_block_ == blocks ? 1 : kMinMessage);
+    return true;
 }
 
 /// Finds the stops of these blocks' rays, which then wait for their first visit. Invalid rays go to
@@ -117,7 +117,7 @@ void RoutedCall::send_off(size_t min_visits) {
     for (uint32_t to = 0; to < outgoing_.size(); ++to) {
         const size_t max = to == ranks_.transport.rank() ? RoutedRays::kMaxRays
                                                          : max_away(ranks_.transport.ranks());
-        while (outgoing_[to].waiting.size() >= min_visits && outgoing_[to].away < max)
+        while (outgoing_[to].waiting.size() >= min_visits && counts_.away[to] < max)
             send_some(to, outgoing_[to]);
     }
 }
@@ -126,7 +126,8 @@ void RoutedCall::send_some(uint32_t to, Outgoing& outgoing) {
     const uint32_t number = number_of(to, outgoing.waiting);
     const size_t visits = sent_[number].rays.size();
     outgoing.away += visits;
-    visits_elsewhere_ += to == ranks_.transport.rank() ? 0 : visits;
+    counts_.away[to] += visits;
+    counts_.visits_elsewhere += to == ranks_.transport.rank() ? 0 : visits;
     ranks_.transport.send(to, visits_of(number));
 }
 
@@ -175,28 +176,6 @@ Message RoutedCall::visits_of(uint32_t number) const {
     return message;
 }
 
-Result<Done> RoutedCall::wait() {
-    const bool was_idle = ranks_.is_idle();
-    const Stopwatch watch;
-    const Result<Done> done = take_answers(std::chrono::milliseconds(50));
-    if (was_idle && ranks_.is_idle())
-        seconds_waiting_ += watch.seconds();
-    if (!done)
-        return done;
-    if (const std::optional<Error> lost = ranks_.transport.lost())
-        return *lost;
-    return watch_.go_on(done_, count());
-}
-
-/// Takes the answers that are here; waits for the first so long at most.
-Result<Done> RoutedCall::take_answers(std::chrono::milliseconds patience) {
-    for (const Received& received : ranks_.transport.answers.take(patience))
-        if (received.message.head().call == call_)
-            if (const Result<Done> done = take(received); !done)
-                return done;
-    return Done{};
-}
-
 Result<Done> RoutedCall::take(const Received& received) {
     const Message& message = received.message;
     if (message.kind() == MessageKind::Failure) {
@@ -221,6 +200,7 @@ Result<Done> RoutedCall::take(const Received& received) {
     for (const uint32_t ray : sent.rays)
         done_ += !go_on(ray);
     outgoing_[sent.to].away -= sent.rays.size();
+    counts_.away[sent.to] -= sent.rays.size();
     answered_.push_back(message.head().number);
     return Done{};
 }
@@ -236,6 +216,25 @@ bool RoutedCall::is_nearer(uint32_t ray, const Hit& hit) const {
     nearest.offer(ranks_.soup.triangle(best.id), best.id);
     nearest.offer(ranks_.soup.triangle(hit.id), hit.id);
     return nearest.best().found.hit.id == hit.id;
+}
+
+Result<Done> take_answers(const Routing& ranks, RoutedCounts& counts,
+                          std::span<RoutedCall* const> calls, std::chrono::milliseconds patience) {
+    const bool was_idle = ranks.is_idle();
+    const Stopwatch watch;
+    const std::vector<Received> all = ranks.transport.answers.take(patience);
+    if (was_idle && ranks.is_idle())
+        counts.seconds_waiting += watch.seconds();
+    for (const Received& received : all)
+        for (RoutedCall* const call : calls)
+            if (received.message.head().call == call->number())
+                if (const Result<Done> done = call->take(received); !done)
+                    return done;
+    if (const std::optional<Error> lost = ranks.transport.lost())
+        return *lost;
+    for (RoutedCall* const call : calls)
+        call->send_off();
+    return Done{};
 }
 
 } // namespace ovc

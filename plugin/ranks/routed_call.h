@@ -7,8 +7,7 @@
 #include "core/exclusions.h"
 #include "core/ray_span.h"
 #include "plugin/ranks/stops.h"
-#include "plugin/ranks/transport.h"
-#include "plugin/structure/call_watch.h"
+#include "plugin/ranks/transport/transport.h"
 
 #include <chrono>
 #include <cstdint>
@@ -27,6 +26,16 @@ struct Routing {
     std::function<bool()> is_idle; // whether this rank traces nothing just now
 };
 
+/// What the routed calls of a scene count together.
+struct RoutedCounts {
+    explicit RoutedCounts(uint32_t ranks) : away(ranks) {}
+
+    uint32_t calls = 0;       // so many were begun
+    std::vector<size_t> away; // how many rays are at each rank
+    uint64_t visits_elsewhere = 0;
+    double seconds_waiting = 0; // while there was nothing to do but to wait for other ranks
+};
+
 /// The rays of a call, at most kMaxRays, and where their answers go: one of the last two is empty.
 struct RoutedRays {
     static constexpr size_t kMaxRays = size_t(1) << 20;
@@ -39,16 +48,29 @@ struct RoutedRays {
 
 class RoutedCall {
 public:
-    RoutedCall(const Routing& ranks, CallWatch& watch)
-        : ranks_(ranks), watch_(watch), outgoing_(ranks.transport.ranks()) {}
+    RoutedCall(const Routing& ranks, RoutedCounts& counts)
+        : ranks_(ranks), counts_(counts), outgoing_(ranks.transport.ranks()) {}
+    ~RoutedCall() { give_up(); }
+    RoutedCall(const RoutedCall&) = delete;
 
-    /// Answers all rays. Error: the call is cancelled, a rank is lost, or one cannot trace. Another
-    /// call may follow in any case.
-    Result<Done> run(const RoutedRays& rays);
+    /// Begins to answer the rays, all of which find_stops() has to send on their way. One call may
+    /// follow the other; an earlier one is given up.
+    void begin(const RoutedRays& rays);
+    /// Finds the stops of the next rays, and sends them. Returns false where there are no more.
+    bool find_stops();
+    /// Sends the rays that wait, as far as other ranks have room for them.
+    void send_off() { send_off(1); }
+    /// Forgets the rays that are on their way, as the destructor does; answers to them are not
+    /// taken.
+    void give_up();
+    /// Takes answers to rays of this call. Error: a rank cannot trace.
+    Result<Done> take(const Received& received);
 
-    uint64_t visits_elsewhere() const { return visits_elsewhere_; }
-    /// Returns how long there was nothing to do but to wait for other ranks.
-    double seconds_waiting() const { return seconds_waiting_; }
+    /// The number of the call in MessageHead::call.
+    uint32_t number() const { return call_; }
+    size_t count() const { return rays_.rays.size(); }
+    size_t done() const { return done_; }
+    bool is_done() const { return done_ == count(); }
 
 private:
     /// What waits to go to a rank, and how many rays are there.
@@ -66,24 +88,20 @@ private:
         std::vector<Stop> stops;
     };
 
-    void begin(const RoutedRays& rays);
     bool is_any() const { return rays_.hits.empty(); }
-    size_t count() const { return rays_.rays.size(); }
     void begin_blocks(size_t first, size_t last);
     bool go_on(uint32_t ray);
     void send_off(size_t min_visits);
     void send_some(uint32_t to, Outgoing& outgoing);
     uint32_t number_of(uint32_t to, std::vector<uint32_t>& waiting);
     Message visits_of(uint32_t number) const;
-    Result<Done> take_answers(std::chrono::milliseconds patience);
-    Result<Done> take(const Received& received);
     bool is_nearer(uint32_t ray, const Hit& hit) const;
-    Result<Done> wait();
 
     const Routing& ranks_;
-    CallWatch& watch_;
-    RoutedRays rays_;   // of the call under way
-    uint32_t call_ = 0; // its number
+    RoutedCounts& counts_;
+    RoutedRays rays_;       // of the call under way
+    uint32_t call_ = kNone; // its number
+    size_t next_block_ = 0; // whose stops are not found yet
     // Below, the memory of short calls is kept for the next.
     std::vector<Block> blocks_;
     std::vector<uint32_t> next_, end_; // of each ray, into the stops of its block
@@ -91,8 +109,11 @@ private:
     std::vector<Sent> sent_;
     std::vector<uint32_t> answered_; // numbers that are free again
     size_t done_ = 0;
-    uint64_t visits_elsewhere_ = 0;
-    double seconds_waiting_ = 0;
 };
+
+/// Hands the answers that have come to those of the calls whose they are, and sends on what these
+/// have; waits for the first answer so long at most. Error: a rank is lost, or cannot trace.
+Result<Done> take_answers(const Routing& ranks, RoutedCounts& counts,
+                          std::span<RoutedCall* const> calls, std::chrono::milliseconds patience);
 
 } // namespace ovc

@@ -256,7 +256,11 @@ std::vector<uint32_t> share_out(const BuiltScene& scene, std::span<const PageBox
                                 const ShareOptions& options) {
     assert(options.ranks > 0);
     std::vector<uint32_t> owners(scene.pages.size(), 0);
-    const uint64_t room = give_instances_to_all(scene, options.everywhere_bytes, owners);
+    // E bytes everywhere of T in all leave (T - E) / N + E to each of N ranks.
+    const uint64_t max_everywhere =
+        options.ranks > 1 ? scene.level2_bytes() / (2 * (options.ranks - 1)) : 0;
+    const uint64_t room =
+        give_instances_to_all(scene, std::min(options.everywhere_bytes, max_everywhere), owners);
     Box around;
     for (const PageBox& box : boxes)
         around.add(box.box);

@@ -2,7 +2,7 @@
 // VisitArrays: the rays of a message that visit a rank, as arrays that a call of a structure takes.
 #pragma once
 
-#include "plugin/ranks/message.h"
+#include "plugin/ranks/transport/message.h"
 
 #include <array>
 #include <cassert>

@@ -8,12 +8,14 @@
 #include <chrono>
 #include <cstring>
 #include <exception>
+#include <iterator>
 #include <optional>
 
 namespace ovc {
 
-/// A batch has so many rays at most, unless one message has more.
-static constexpr size_t kMaxBatch = size_t(1) << 17;
+/// A batch has so many rays a thread at most, unless one message has more: passes over as many cost
+/// what their rays do, and what comes from other ranks meanwhile does not wait for long.
+static constexpr size_t kMaxRaysAThread = size_t(1) << 14;
 
 /// The visits of several messages as a call takes them. A single message's rays stay where they
 /// are; those of several are copied, into arrays that keep their memory from batch to batch.
@@ -94,52 +96,59 @@ void VisitServer::run(const std::stop_token& stop) {
     std::optional<LoopThreads::Scope> scope;
     if (threads_)
         scope.emplace(*threads_);
+    std::vector<Received> waiting;
     while (!stop.stop_requested()) {
-        std::vector<Received> all = transport_.visits.take(std::chrono::milliseconds(50));
+        const std::chrono::milliseconds patience(waiting.empty() ? 50 : 0);
+        std::ranges::move(transport_.visits.take(patience), std::back_inserter(waiting));
         // Others have waited for their rays to come here already.
         std::ranges::stable_partition(
-            all, [&](const Received& received) { return received.from != transport_.rank(); });
-        is_idle_ = all.empty();
-        // Rays that ask for any hit have no children, so nothing waits for the others' sake.
-        for (const MessageKind kind : {MessageKind::NearestVisits, MessageKind::AnyVisits})
-            serve(all, kind);
-        is_idle_ = true;
+            waiting, [&](const Received& received) { return received.from != transport_.rank(); });
+        is_idle_ = waiting.empty();
+        if (!waiting.empty())
+            serve_first(waiting);
+        is_idle_ = waiting.empty();
     }
+}
+
+/// Serves a batch of the first messages, those that ask for the same as the first of all, and
+/// removes them.
+void VisitServer::serve_first(std::vector<Received>& waiting) {
+    const MessageKind kind = waiting.front().message.kind();
+    const size_t max_rays = kMaxRaysAThread * thread_count();
+    std::vector<Received> some;
+    size_t rays = 0;
+    std::erase_if(waiting, [&](Received& received) {
+        const size_t more = received.message.head().count;
+        const bool is_taken =
+            received.message.kind() == kind && (some.empty() || rays + more <= max_rays);
+        if (is_taken) {
+            rays += more;
+            served_ += received.from == transport_.rank() ? 0 : more;
+            some.push_back(std::move(received));
+        }
+        return is_taken;
+    });
+    serve(some, kind);
 }
 
 void VisitServer::serve(std::span<const Received> all, MessageKind kind) {
     std::vector<const Received*> some;
-    const auto trace = [&] {
-        if (some.empty())
-            return;
-        const std::lock_guard lock(local_mutex_);
-        try {
-            batch_->fill(some);
-            if (kind == MessageKind::AnyVisits)
-                answer<uint8_t>(some, MessageKind::Occlusions, [&](std::span<uint8_t> occluded) {
-                    return local_.occluded(batch_->rays, batch_->without, occluded);
-                });
-            else
-                answer<Hit>(some, MessageKind::Hits, [&](std::span<Hit> hits) {
-                    return local_.intersect(batch_->rays, batch_->without, hits);
-                });
-        } catch (const std::exception& error) {
-            fail(some, Error{error.what()});
-        }
-        some.clear();
-    };
-    size_t rays = 0;
-    for (const Received& received : all) {
-        if (received.message.kind() != kind)
-            continue;
-        const size_t more = received.message.head().count;
-        if (rays + more > kMaxBatch)
-            trace(), rays = 0;
+    for (const Received& received : all)
         some.push_back(&received);
-        rays += more;
-        served_ += received.from == transport_.rank() ? 0 : more;
+    const std::lock_guard lock(local_mutex_);
+    try {
+        batch_->fill(some);
+        if (kind == MessageKind::AnyVisits)
+            answer<uint8_t>(some, MessageKind::Occlusions, [&](std::span<uint8_t> occluded) {
+                return local_.occluded(batch_->rays, batch_->without, occluded);
+            });
+        else
+            answer<Hit>(some, MessageKind::Hits, [&](std::span<Hit> hits) {
+                return local_.intersect(batch_->rays, batch_->without, hits);
+            });
+    } catch (const std::exception& error) {
+        fail(some, Error{error.what()});
     }
-    trace();
 }
 
 /// Sends the answers that trace(span) writes to where their rays came from.

@@ -4,13 +4,14 @@
 #pragma once
 
 #include "core/system/parallel.h"
-#include "plugin/ranks/transport.h"
+#include "plugin/ranks/transport/transport.h"
 #include "plugin/structure/structure.h"
 
 #include <atomic>
 #include <memory>
 #include <mutex>
 #include <thread>
+#include <vector>
 
 namespace ovc {
 
@@ -42,6 +43,7 @@ private:
     using Messages = std::span<const Received* const>;
 
     void run(const std::stop_token& stop);
+    void serve_first(std::vector<Received>& waiting);
     void serve(std::span<const Received> all, MessageKind kind);
     template <class Answer, class Trace>
     void answer(Messages messages, MessageKind kind, Trace&& trace);

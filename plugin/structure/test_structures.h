@@ -86,7 +86,7 @@ public:
         const size_t count = std::min(at_once_, rays_.size() - next_);
         std::vector<uint64_t> tokens(count);
         std::iota(tokens.begin(), tokens.end(), next_);
-        stream.push({false, rays_.subspan(next_, count), {}, tokens});
+        stream.push({false, rays_.subspan(next_, count), {}, tokens, {}, {}, filters});
         next_ += count;
         return true;
     }
@@ -104,7 +104,7 @@ public:
             skip.push_back(hits[i].id);
             names.push_back(tokens[i]);
         }
-        stream.push({true, spawned, skip, names});
+        stream.push({true, spawned, skip, names, {}, {}, filters});
         return answers < stop_after;
     }
     bool occlusions(RayStream&, std::span<const uint64_t> tokens,
@@ -122,6 +122,7 @@ public:
     std::vector<uint8_t> blocked; // 2: never asked
     size_t answers = 0;
     size_t stop_after = ~size_t(0);
+    std::span<HitFilter* const> filters{}; // empty, or one for all rays
 
 private:
     std::span<const Ray> rays_;

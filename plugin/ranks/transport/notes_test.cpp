@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Notes arrive whole and in order, whatever their length and that of a message.
-#include "plugin/ranks/notes.h"
+#include "plugin/ranks/transport/notes.h"
 
-#include "plugin/ranks/memory_transport.h"
+#include "plugin/ranks/transport/memory_transport.h"
 
 #include <gtest/gtest.h>
 

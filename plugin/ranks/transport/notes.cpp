@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Exchanges notes by way of rank 0.
-#include "plugin/ranks/notes.h"
+#include "plugin/ranks/transport/notes.h"
 
 #include "core/text/format_text.h"
 

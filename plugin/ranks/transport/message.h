@@ -6,7 +6,7 @@
 #include "core/exclusions.h"
 #include "core/ray.h"
 #include "core/result.h"
-#include "plugin/ranks/message_bytes.h"
+#include "plugin/ranks/transport/message_bytes.h"
 
 #include <cassert>
 #include <cstddef>

@@ -2,7 +2,7 @@
 // Notes: bytes that all ranks exchange at the same point of their program.
 #pragma once
 
-#include "plugin/ranks/transport.h"
+#include "plugin/ranks/transport/transport.h"
 
 #include <cstddef>
 #include <cstdint>

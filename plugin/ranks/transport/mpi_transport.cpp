@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // One thread a transport does all that MPI is needed for: it sends, receives, and listens for
 // heartbeats. Ranks watch each other in a ring, so that a thousand of them send no more than two.
-#include "plugin/ranks/mpi_transport.h"
+#include "plugin/ranks/transport/mpi_transport.h"
 
 #include "core/text/format_text.h"
 

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "core/result.h"
-#include "plugin/ranks/message.h"
+#include "plugin/ranks/transport/message.h"
 
 #include <chrono>
 #include <condition_variable>

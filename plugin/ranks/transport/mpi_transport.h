@@ -2,7 +2,7 @@
 // MpiTransport: the transport between the processes of an MPI communicator.
 #pragma once
 
-#include "plugin/ranks/transport.h"
+#include "plugin/ranks/transport/transport.h"
 
 #include <memory>
 

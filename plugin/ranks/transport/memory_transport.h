@@ -3,7 +3,7 @@
 // arrive late, and in another order than MPI would have them, except between the same two ranks.
 #pragma once
 
-#include "plugin/ranks/transport.h"
+#include "plugin/ranks/transport/transport.h"
 
 #include <atomic>
 #include <memory>
