@@ -235,6 +235,16 @@ struct ImageWindow {
     double vertical_angle = 90;
 };
 
+/// A thin lens, which is sharp at one depth. Rays begin on the ellipse around the eye whose half
+/// axes are `right` and `up`.
+struct Lens {
+    dvec3 right{0};
+    dvec3 up{0};
+    double focus = 1; // where rays through one place of the picture meet: their t, above 0
+
+    bool operator==(const Lens&) const = default;
+};
+
 /// A perspective camera. fov_degrees: the full angle of view along the image's shorter side.
 struct Camera {
     dvec3 eye{0, 0, 1};
@@ -247,6 +257,7 @@ struct Camera {
     /// Tilts the rays' directions. Its space is that of the picture, from -0.5 to 0.5 from left to
     /// right and from bottom to top. Its textures are those of the scene.
     std::optional<Bump> bump;
+    std::optional<Lens> lens; // none: everything is sharp, as it is in a bent picture
 };
 
 struct ImageSize {

@@ -119,7 +119,7 @@ void each_field(auto& io, Some<ImageWindow> auto& w) {
 }
 
 void each_field(auto& io, Some<Camera> auto& c) {
-    io(c.eye, c.target, c.up, c.fov_degrees, c.window, c.bump);
+    io(c.eye, c.target, c.up, c.fov_degrees, c.window, c.bump, c.lens);
 }
 
 void each_field(auto& io, Some<ImageSize> auto& s) {

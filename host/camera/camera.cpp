@@ -53,6 +53,10 @@ Result<Done> check_camera(const Camera& camera) {
     if (!(std::abs(glm::dot(glm::cross(unit(window.right), unit(window.up)),
                             unit(window.direction))) > 1e-12))
         return Error{"the camera's direction, right and up lie in one plane"};
+    if (const Lens lens = camera.lens.value_or(Lens{});
+        !(lens.focus > 0 && lens.focus <= kFarthest) || !is_finite(lens.right) ||
+        !is_finite(lens.up))
+        return Error{"the camera's lens has no size, or is sharp nowhere in front of it"};
     return Done{};
 }
 
@@ -70,6 +74,7 @@ Pinhole::Pinhole(const Camera& camera, const PicturePart& part, const Scene* sce
     to_right_ = unit * width * right_;
     to_top_ = unit * height * up_;
     bump_ = camera.bump;
+    lens_ = camera.lens;
     if (camera.window) {
         middle_ = camera.window->direction;
         to_right_ = 0.5 * camera.window->right;
@@ -78,12 +83,19 @@ Pinhole::Pinhole(const Camera& camera, const PicturePart& part, const Scene* sce
         if (camera.window->bend != ImageWindow::Bend::Flat)
             bent_ = *camera.window;
     }
+    if (bent_)
+        lens_.reset();
 }
 
-Ray Pinhole::ray(uint32_t x, uint32_t y, const dvec2& place) const {
+Ray Pinhole::ray(uint32_t x, uint32_t y, const dvec2& place, const dvec2& lens) const {
     const dvec2 at = (dvec2(part_.left + x, part_.top + y) + place) /
                      dvec2(part_.picture.width, part_.picture.height);
     Ray ray = straight_ray(at);
+    if (lens_ && lens != dvec2(0)) {
+        const dvec3 off = lens.x * lens_->right + lens.y * lens_->up;
+        ray.org += off;
+        ray.dir -= off / lens_->focus; // t is the depth still
+    }
     if (bump_ && scene_ && ray.dir != dvec3(0))
         ray.dir = bumped(scene_->textures, scene_->bumps, *bump_, {at.x - 0.5, 0.5 - at.y, 0},
                          glm::normalize(ray.dir), ray.dir);
@@ -182,6 +194,14 @@ Camera framing_camera(const Box& bounds, uint32_t width, uint32_t height, int up
     distance = distance > 0 ? distance * 1.04 : 1;
     camera.eye = camera.target + distance * towards_eye;
     return camera;
+}
+
+Lens lens_of(const Camera& camera, double radius, std::optional<double> focus) {
+    const ViewAxes axes = view_axes(camera);
+    const double unit =
+        camera.window ? glm::length(camera.window->direction) : 1; // a depth of t = 1
+    const double distance = focus.value_or(glm::length(camera.target - camera.eye));
+    return {radius * axes.right, radius * axes.up, distance / unit};
 }
 
 Light shoulder_light(const Camera& camera) {

@@ -18,8 +18,9 @@ namespace ovc {
 inline constexpr double kFarthest = 1e100;
 
 /// Checks that `camera` can make rays: its numbers are finite and no larger than kFarthest, its
-/// field of view is between 0 and 180 degrees, the eye is not the target, and its window has an
-/// area that is not seen edge on. The error does not say whose camera it is.
+/// field of view is between 0 and 180 degrees, the eye is not the target, its window has an area
+/// that is not seen edge on, and its lens is sharp somewhere in front of it. The error does not say
+/// whose camera it is.
 Result<Done> check_camera(const Camera& camera);
 
 /// A part of a larger picture, at `left` and `top` pixels from its left and upper edge.
@@ -43,8 +44,12 @@ public:
     /// Returns the ray through a place in pixel (x, y); pixel (0, 0) is top left. place: from (0,
     /// 0), the pixel's top left corner, to (1, 1). dir is not of unit length: t is the depth, of a
     /// window in units of its direction. A pixel that a bent picture leaves out gets a ray with a
-    /// dir of 0, which hits nothing.
-    Ray ray(uint32_t x, uint32_t y, const dvec2& place = dvec2(0.5)) const;
+    /// dir of 0, which hits nothing. A place outside of the pixel is one in its neighbours.
+    /// lens: a place in the unit disk, where the ray goes through the camera's lens, if it has one.
+    Ray ray(uint32_t x, uint32_t y, const dvec2& place = dvec2(0.5),
+            const dvec2& lens = dvec2(0)) const;
+
+    bool has_lens() const { return lens_.has_value(); }
 
     uint32_t width() const { return part_.size.width; }
     uint32_t height() const { return part_.size.height; }
@@ -58,6 +63,7 @@ private:
     PicturePart part_;
     const Scene* scene_;
     std::optional<Bump> bump_;
+    std::optional<Lens> lens_;
     dvec3 eye_, right_, up_;
     // From the eye to the middle of the image plane, and from there to its right and upper edge.
     dvec3 middle_, to_right_, to_top_;
@@ -78,6 +84,10 @@ dvec3 axis_vector(int axis);
 /// of a model is +z where y is up, -y where z is up, and +z where x is up. Empty bounds give the
 /// default Camera, with that axis up.
 Camera framing_camera(const Box& bounds, uint32_t width, uint32_t height, int up = 1);
+
+/// Returns a round lens across the camera's view. radius: above 0. focus: the distance along the
+/// view at which it is sharp; none: the camera's target.
+Lens lens_of(const Camera& camera, double radius, std::optional<double> focus);
 
 /// Returns a light above the camera's left shoulder: from the eye 1.1 of its distance to the target
 /// up, and 0.9 of it to the left.

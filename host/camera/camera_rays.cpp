@@ -3,15 +3,21 @@
 #include "host/camera/camera_rays.h"
 
 #include "core/system/parallel.h"
+#include "host/shade/path_sampler.h"
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 namespace ovc {
 
 static constexpr size_t kCameraGrain = 1024; // rays a task
+/// Pixels that get any number of samples have the footprint of so many.
+static constexpr uint32_t kCommonSamples = 16;
+/// The purposes of a camera ray's random numbers, above those of surfaces of the path tracer.
+static constexpr uint32_t kPlace = 1u << 30, kOnLens = kPlace + 1;
 
 /// Returns the first dimension of Sobol's sequence: the bits of i, mirrored behind the point.
 static double mirrored_bits(uint32_t i) {
@@ -49,16 +55,35 @@ static Cone cone_of(const Pinhole& pinhole, uint32_t samples) {
             float(share * glm::length(b.dir / length_b - a.dir / length_a))};
 }
 
-CameraRays::CameraRays(const Pinhole& pinhole, const Film& film)
+/// Returns a place in the unit disk, evenly where u is so in [0, 1)^2.
+/// Source: Shirley and Chiu 1997, "A Low Distortion Map between Disk and Square".
+static dvec2 in_disk(const dvec2& u) {
+    const dvec2 v = 2.0 * u - 1.0;
+    if (v == dvec2(0))
+        return dvec2(0);
+    constexpr double kQuarter = std::numbers::pi / 4;
+    const bool wide = std::abs(v.x) > std::abs(v.y);
+    const double radius = wide ? v.x : v.y;
+    const double angle = wide ? kQuarter * (v.y / v.x) : 2 * kQuarter - kQuarter * (v.x / v.y);
+    return radius * dvec2(std::cos(angle), std::sin(angle));
+}
+
+CameraRays::CameraRays(const Pinhole& pinhole, const Film& film, const CameraSampling& sampling)
     : pinhole_(pinhole),
       cone_(cone_of(pinhole, film.samples())),
       samples_(film.samples()),
+      sampling_(sampling),
+      filter_(sampling.filter),
       order_(pixel_order(film.width(), film.height())) {
     std::erase_if(order_, [&](uint32_t pixel) { return film.done(pixel); });
 }
 
 CameraRays::CameraRays(const Pinhole& pinhole, const Film& film, std::span<const dvec2> points)
-    : pinhole_(pinhole), cone_(cone_of(pinhole, 1)), samples_(1), points_(points) {
+    : pinhole_(pinhole),
+      cone_(cone_of(pinhole, 1)),
+      samples_(1),
+      filter_(sampling_.filter),
+      points_(points) {
     assert(points.size() == uint64_t(film.width()) * film.height());
     for (uint32_t pixel = 0; pixel < points.size(); ++pixel)
         if (!film.done(pixel))
@@ -66,8 +91,14 @@ CameraRays::CameraRays(const Pinhole& pinhole, const Film& film, std::span<const
 }
 
 CameraRays::CameraRays(const Pinhole& pinhole, uint32_t samples, std::vector<uint32_t> pixels,
-                       std::span<const dvec2> points)
-    : pinhole_(pinhole), samples_(samples), order_(std::move(pixels)), points_(points) {
+                       std::span<const dvec2> points, const CameraSampling& sampling)
+    : pinhole_(pinhole),
+      cone_(cone_of(pinhole, sampling.random_places ? kCommonSamples : samples)),
+      samples_(samples),
+      sampling_(sampling),
+      filter_(sampling.filter),
+      order_(std::move(pixels)),
+      points_(points) {
     assert(points.empty() || samples == 1);
 }
 
@@ -82,16 +113,25 @@ Ray ray_through(const Pinhole& pinhole, const dvec2& point) {
     return pinhole.ray(pixel.x, pixel.y, point - dvec2(pixel));
 }
 
+CameraRays::Place CameraRays::sampled(uint32_t pixel, uint32_t sample) const {
+    const PathSampler random(sampling_.seed, pixel, sample);
+    const dvec2 u = sampling_.random_places ? random.pair(kPlace) : sample_place(sample, samples_);
+    const bool is_blurred = pinhole_.has_lens() && (samples_ > 1 || sampling_.random_places);
+    return {pixel,
+            sample,
+            pixel % pinhole_.width(),
+            pixel / pinhole_.width(),
+            filter_.place(u),
+            is_blurred ? in_disk(random.pair(kOnLens)) : dvec2(0)};
+}
+
 CameraRays::Place CameraRays::place(uint64_t i) const {
-    if (points_.empty()) {
-        const uint32_t pixel = order_[i / samples_], sample = uint32_t(i % samples_);
-        return {pixel, sample, pixel % pinhole_.width(), pixel / pinhole_.width(),
-                sample_place(sample, samples_)};
-    }
+    if (points_.empty())
+        return sampled(order_[i / samples_], sampling_.first_sample + uint32_t(i % samples_));
     const uint32_t pixel = order_[i];
     const dvec2& at = points_[pixel];
     const glm::uvec2 in = pixel_at(pinhole_, at);
-    return {pixel, 0, in.x, in.y, at - dvec2(in)};
+    return {pixel, 0, in.x, in.y, at - dvec2(in), dvec2(0)};
 }
 
 void CameraRays::make(uint64_t first, size_t count, RayList<Path>& paths) const {
@@ -101,10 +141,10 @@ void CameraRays::make(uint64_t first, size_t count, RayList<Path>& paths) const 
     parallel_for(count, kCameraGrain, [&](size_t from, size_t to) {
         for (size_t i = from; i < to; ++i) {
             const Place at = place(first + i);
-            paths.rays[before + i] = pinhole_.ray(at.x, at.y, at.within);
+            paths.rays[before + i] = pinhole_.ray(at.x, at.y, at.within, at.lens);
             paths.skip[before + i] = TriangleId();
             paths.purposes[before + i] = {
-                at.pixel, at.sample, 0, RayKind::Camera, false, vec3(1), 0, 0, cone_};
+                at.pixel, at.sample, 0, RayKind::Camera, false, false, vec3(1), 0, 0, cone_};
         }
     });
 }

@@ -5,9 +5,11 @@
 
 #include "host/camera/camera.h"
 #include "host/film/film.h"
+#include "host/film/pixel_filter.h"
 #include "host/shade/integrator.h"
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -21,10 +23,18 @@ dvec2 sample_place(uint32_t i, uint32_t samples);
 /// Returns the ray through a point of the picture, in pixels from its top left corner.
 Ray ray_through(const Pinhole& pinhole, const dvec2& point);
 
+/// How a pixel's camera rays are spread over it, and over the lens.
+struct CameraSampling {
+    FilterOptions filter{};
+    uint64_t seed = 0;          // of places on the lens, and of random places in pixels
+    bool random_places = false; // other ones in each pixel; false: sample_place() in all of them
+    uint32_t first_sample = 0;  // the number of a pixel's first ray
+};
+
 class CameraRays {
 public:
     /// The pinhole must outlive it; the film need not.
-    CameraRays(const Pinhole& pinhole, const Film& film);
+    CameraRays(const Pinhole& pinhole, const Film& film, const CameraSampling& sampling = {});
     /// Makes a ray through each of the points of the picture, which are in pixels from its top left
     /// corner, in their order, one for each pixel of the film that is not done. The points must
     /// outlive it.
@@ -32,7 +42,7 @@ public:
     /// Makes so many rays for each of these pixels of a film, in their order: through the pixel, or
     /// through its point where there are points.
     CameraRays(const Pinhole& pinhole, uint32_t samples, std::vector<uint32_t> pixels,
-               std::span<const dvec2> points);
+               std::span<const dvec2> points, const CameraSampling& sampling = {});
 
     uint64_t size() const { return uint64_t(order_.size()) * samples_; }
 
@@ -44,12 +54,16 @@ private:
         uint32_t pixel, sample; // of the film
         uint32_t x, y;          // the pixel of the picture
         dvec2 within;           // the place within that pixel
+        dvec2 lens;             // the place on the lens, in the unit disk
     };
     Place place(uint64_t i) const;
+    Place sampled(uint32_t pixel, uint32_t sample) const;
 
     const Pinhole& pinhole_;
     const Cone cone_;
     const uint32_t samples_;
+    const CameraSampling sampling_;
+    const PixelFilter filter_;
     std::vector<uint32_t> order_;   // pixels of the film
     std::span<const dvec2> points_; // empty: rays through pixels
 };

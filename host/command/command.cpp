@@ -6,6 +6,7 @@
 #include "host/arguments/arguments.h"
 #include "host/diff/verdict.h"
 #include "host/ranks/ranks.h"
+#include "host/scene/scene_pictures.h"
 #include "host/terminal/message.h"
 #include "host/terminal/version.h"
 
@@ -104,6 +105,12 @@ Result<int> run_command(const Arguments& arguments) {
     }
     if (name == "--version" || name == "-V" || name == "version") {
         fmt::print("overcast {}\n", version_text());
+        if (ScenePictures::library_is_there())
+            fmt::print("with {}: scenes show their pictures\n", kTextureLibrary);
+        else
+            fmt::print("without {}: scenes are rendered without their pictures; it is built where "
+                       "OpenImageIO is installed (Debian: libopenimageio-dev)\n",
+                       kTextureLibrary);
         if (!Ranks::library_is_there())
             fmt::print(
                 "without {}: mpirun cannot share work out between processes; it is built where "

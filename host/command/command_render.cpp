@@ -2,6 +2,7 @@
 // overcast render: a scene in, pictures and statistics out. Here are its options, and their checks;
 // host/render/render_job.cpp does the work.
 #include "host/arguments/backend_arguments.h"
+#include "host/arguments/film_arguments.h"
 #include "host/arguments/log_arguments.h"
 #include "host/arguments/memory_size.h"
 #include "host/arguments/pov_words.h"
@@ -58,10 +59,7 @@ the same command with --continue goes on from there.)";
 static constexpr std::string_view kModes[] = {"auto", "batched", "mixed"};
 /// In the order of IntegratorKind.
 static constexpr std::string_view kIntegrators[] = {"whitted", "path"};
-/// In the order of Antialias::Method.
-static constexpr std::string_view kAntialiasMethods[] = {"1", "2"};
 static constexpr std::string_view kAxes[] = {"x", "y", "z"};
-static constexpr std::string_view kPngBits[] = {"8", "16"};
 
 /// The options as the user wrote them.
 struct RenderWords {
@@ -74,9 +72,7 @@ struct RenderWords {
     std::string frames;
     std::string camera_path;
     std::vector<std::string> lights;
-    std::string samples;
-    std::string antialias, antialias_method, antialias_depth, jitter;
-    std::string seed;
+    FilmArguments film;
     std::string threads;
     std::string save_every;
     bool go_on = false;
@@ -84,7 +80,6 @@ struct RenderWords {
     std::string integrator = "whitted";
     std::string mode = "auto";
     std::string aov;
-    std::string png_bits = "8";
     bool no_shadows = false;
     bool no_cutouts = false;
     bool working_set = false;
@@ -92,6 +87,7 @@ struct RenderWords {
     std::string texture_memory;
     std::string cache;
     std::string stats;
+    std::string progress;
     LogArguments log{LogLevel::Info};
 
     void add_to(CLI::App& app);
@@ -99,7 +95,6 @@ struct RenderWords {
 private:
     void add_picture_to(CLI::App& app);
     void add_view_to(CLI::App& app);
-    void add_sampling_to(CLI::App& app);
     void add_light_to(CLI::App& app);
     void add_run_to(CLI::App& app);
 };
@@ -150,37 +145,6 @@ void RenderWords::add_view_to(CLI::App& app) {
         ->type_name("X,Y,Z");
 }
 
-void RenderWords::add_sampling_to(CLI::App& app) {
-    app.add_option(
-           "--samples,--spp", samples,
-           "Rays a pixel, up to 65536: more of them smooth edges; the same ones every time; "
-           "default: 1, through its middle")
-        ->type_name("N");
-    app.add_option(
-           "--antialias", antialias,
-           "One ray a pixel, and more only where colors differ by this, red, green and blue "
-           "together: 0 to 3, POV-Ray's default is 0.3; instead of --samples")
-        ->type_name("X");
-    app.add_option(
-           "--antialias-method", antialias_method,
-           "1: pixels that differ from a neighbour get rays on a grid; 2: pixels that differ "
-           "at their corners are quartered again and again; default: 1")
-        ->type_name(choice_names(kAntialiasMethods));
-    app.add_option(
-           "--antialias-depth", antialias_depth,
-           "Of method 1: N x N rays more; of method 2: 2^(N-1) parts a side at most; 1 to 9, "
-           "default: 3")
-        ->type_name("N");
-    app.add_option("--jitter", jitter,
-                   "How far rays of --antialias may lie off their grid, by chance that is the same "
-                   "every time: 0 to 1; default: 1")
-        ->type_name("X");
-    app.add_option("--seed", seed,
-                   "Of path tracing: other numbers make other noise, the same the same picture; "
-                   "default: 0")
-        ->type_name("N");
-}
-
 void RenderWords::add_light_to(CLI::App& app) {
     app.add_option("--integrator", integrator,
                    "whitted (mirrors, glass, and the light of lamps) or path (path tracing: light "
@@ -198,11 +162,10 @@ void RenderWords::add_light_to(CLI::App& app) {
         ->type_name(choice_names(kModes));
     app.add_option("--aov", aov,
                    "Layers of the .exr files, of what the camera's rays hit, separated by commas: "
-                   "depth, normal, id (mesh and triangle), leaf (of level 1), passes (that the "
+                   "depth, normal, albedo (the color of surfaces, for denoisers), id (mesh and "
+                   "triangle), leaf (of level 1), passes (that the "
                    "ray took part in), flagged (1 where the kernel was not certain)")
         ->type_name("NAMES");
-    app.add_option("--png-bits", png_bits, "Bits a channel of .png files; default: 8")
-        ->type_name(choice_names(kPngBits));
     app.add_flag("--no-shadows", no_shadows, "Lights shine through everything");
     app.add_option("--texture-memory", texture_memory,
                    "For texels of the scene's pictures, at least 10M; default: 256M "
@@ -228,6 +191,10 @@ void RenderWords::add_run_to(CLI::App& app) {
         ->type_name("N");
     app.add_option("--stats", stats, "Write statistics as JSON (docs/reference/stats.md)")
         ->type_name("FILE.json");
+    app.add_option("--progress", progress,
+                   "Write how it goes as JSON, a line for each event, to a file, a pipe or - for "
+                   "standard output, which then has nothing else (docs/guide/film.md)")
+        ->type_name("FILE");
     app.add_flag("--working-set", working_set,
                  "The statistics tell which pages each frame's rays go through; takes up to half "
                  "as long again");
@@ -237,7 +204,7 @@ void RenderWords::add_to(CLI::App& app) {
     scene.add_to(app);
     add_picture_to(app);
     add_view_to(app);
-    add_sampling_to(app);
+    film.add_to(app);
     add_light_to(app);
     add_run_to(app);
     log.add_to(app, /* with_quiet= */ true);
@@ -326,6 +293,8 @@ static Result<Done> check_files(const RenderWords& words, const RenderJob& job,
         files.push_back({"output", frame ? frame_file(output, *frame) : output});
     if (!job.stats.empty())
         files.push_back({"statistics", job.stats});
+    if (!job.progress.empty() && job.progress != "-")
+        files.push_back({"progress", job.progress});
     return check_distinct(files);
 }
 
@@ -395,14 +364,10 @@ static Result<Done> understand_counts(const RenderWords& words, RenderJob& job) 
         uint64_t least, most;
         std::function<void(uint64_t)> take;
     };
-    const Wanted all[] = {
-        {"--threads", words.threads, 1, kMaxThreads,
-         [&](uint64_t threads) { job.threads = uint32_t(threads); }},
-        {"--seed", words.seed, 0, ~uint64_t(0), [&](uint64_t seed) { job.render.seed = seed; }},
-        {"--samples", words.samples, 1, kMaxSamples,
-         [&](uint64_t samples) { job.samples = uint32_t(samples); }},
-        {"--max-depth", words.max_depth, 0, kMaxDepth,
-         [&](uint64_t depth) { job.max_depth = uint32_t(depth); }}};
+    const Wanted all[] = {{"--threads", words.threads, 1, kMaxThreads,
+                           [&](uint64_t threads) { job.threads = uint32_t(threads); }},
+                          {"--max-depth", words.max_depth, 0, kMaxDepth,
+                           [&](uint64_t depth) { job.max_depth = uint32_t(depth); }}};
     for (const Wanted& wanted : all) {
         if (wanted.text.empty())
             continue;
@@ -425,43 +390,7 @@ static Result<Done> understand_saving(const RenderWords& words, RenderJob& job) 
     return check_ranks("--save-every", words.save_every);
 }
 
-static Result<Done> understand_antialias(const RenderWords& words, RenderJob& job) {
-    Antialias how;
-    if (!words.antialias_method.empty()) {
-        const Result<size_t> method =
-            parse_choice("--antialias-method", words.antialias_method, kAntialiasMethods);
-        if (!method)
-            return method.error();
-        how.method = Antialias::Method(*method + 1);
-    }
-    if (!words.antialias_depth.empty()) {
-        const Result<uint64_t> depth =
-            parse_count("--antialias-depth", words.antialias_depth, 1, kMaxAntialiasDepth);
-        if (!depth)
-            return depth.error();
-        how.depth = uint32_t(*depth);
-    }
-    if (!words.jitter.empty()) {
-        const Result<double> jitter = parse_real("--jitter", words.jitter, 0, 1);
-        if (!jitter)
-            return jitter.error();
-        how.jitter = float(*jitter);
-    }
-    if (words.antialias.empty()) // as with POV-Ray, whose files may have the others without it
-        return Done{};
-    if (!words.samples.empty())
-        return Error{"--samples and --antialias cannot be given together"};
-    const Result<double> threshold = parse_real("--antialias", words.antialias, 0, 3);
-    if (!threshold)
-        return threshold.error();
-    how.threshold = float(*threshold);
-    job.render.antialias = how;
-    return Done{};
-}
-
 static Result<Done> understand_shading(const RenderWords& words, RenderJob& job) {
-    if (const Result<Done> fine = understand_antialias(words, job); !fine)
-        return fine;
     if (const Result<Done> fine = understand_counts(words, job); !fine)
         return fine;
     const Result<size_t> mode = parse_choice("--mode", words.mode, kModes);
@@ -472,6 +401,8 @@ static Result<Done> understand_shading(const RenderWords& words, RenderJob& job)
     if (!integrator)
         return integrator.error();
     job.render.integrator = IntegratorKind(*integrator);
+    if (const Result<Done> fine = words.film.resolve(job); !fine)
+        return fine;
     job.render.shadows = !words.no_shadows;
     job.render.cutouts = !words.no_cutouts;
     if (!words.texture_memory.empty()) {
@@ -482,14 +413,6 @@ static Result<Done> understand_shading(const RenderWords& words, RenderJob& job)
     }
     if (isatty(STDERR_FILENO))
         job.render.batch_rays = kWatchedBatchRays;
-    return Done{};
-}
-
-static Result<Done> understand_png(const RenderWords& words, RenderJob& job) {
-    const Result<size_t> choice = parse_choice("--png-bits", words.png_bits, kPngBits);
-    if (!choice)
-        return choice.error();
-    job.png_bits = *choice == 0 ? 8 : 16;
     return Done{};
 }
 
@@ -513,7 +436,8 @@ static Result<RenderJob> understand(const RenderWords& words) {
     job.scene = words.scene;
     job.cache = words.cache;
     job.stats = words.stats;
-    job.quiet = words.log.quiet();
+    job.progress = words.progress;
+    job.quiet = words.log.quiet() || words.progress == "-";
     const Result<LogLevel> level = words.log.resolve();
     if (!level)
         return level.error();
@@ -537,8 +461,6 @@ static Result<RenderJob> understand(const RenderWords& words) {
     if (const Result<Done> fine = understand_view(words, job); !fine)
         return fine.error();
     if (const Result<Done> fine = understand_shading(words, job); !fine)
-        return fine.error();
-    if (const Result<Done> fine = understand_png(words, job); !fine)
         return fine.error();
     if (const Result<Done> fine = understand_aovs(words, job); !fine)
         return fine.error();

@@ -415,6 +415,8 @@ TEST_F(CommandTest, HelpAndVersionAreWordsToo) {
     EXPECT_THAT(error({"help", "rendr"}), testing::HasSubstr("did you mean 'render'?"));
     EXPECT_EQ(printed({"version"}), printed({"--version"}));
     EXPECT_EQ(printed({"-V"}), printed({"--version"}));
+    EXPECT_THAT(printed({"--version"}),
+                testing::ContainsRegex("\nwith(out)? libovercast-textures.so: scenes "));
 }
 
 TEST_F(CommandTest, ConvertSaysWhatItLeavesOut) {

@@ -74,16 +74,18 @@ void Film::restore(std::span<const uint32_t> pixels, std::span<const Sums> sums)
     });
 }
 
+dvec3 Film::mean(uint32_t pixel) const {
+    const double scale = 1 / (kOne * samples_);
+    const Sums sum = sums(pixel);
+    return scale * dvec3(double(sum[0]), double(sum[1]), double(sum[2]));
+}
+
 Image Film::image() const {
     Image image(width_, height_);
-    const double scale = 1 / (kOne * samples_);
     parallel_for(image.pixels.size(), 4096, [&](size_t first, size_t last) {
         for (size_t i = first; i < last; ++i)
-            if (done(uint32_t(i))) {
-                const Sums light = sums(uint32_t(i));
-                image.pixels[i] = vec4(
-                    vec3(scale * dvec3(double(light[0]), double(light[1]), double(light[2]))), 1);
-            }
+            if (done(uint32_t(i)))
+                image.pixels[i] = vec4(vec3(mean(uint32_t(i))), 1);
     });
     return image;
 }

@@ -54,6 +54,8 @@ public:
     /// The same for several pixels, each named once. sums: one for each.
     void restore(std::span<const uint32_t> pixels, std::span<const Sums> sums);
 
+    /// Returns the mean light of a pixel that is done.
+    dvec3 mean(uint32_t pixel) const;
     /// Returns the picture. Pixels that are not done are black, with alpha 0.
     Image image() const;
 

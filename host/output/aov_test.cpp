@@ -59,7 +59,7 @@ TEST(Aovs, OfAFileAreWhatEachPixelsRayHits) {
     ASSERT_TRUE(scene);
     const Camera camera = scene->camera.value_or(Camera{dvec3(3, 2, 6), dvec3(0)});
     const auto backend = make_cpu_backend(scene->soup);
-    Aovs aovs{true, true, true};
+    Aovs aovs{.depth = true, .normal = true, .id = true};
     const auto layers = trace_aovs(*scene, Pinhole(camera, kLayerWidth, kLayerHeight),
                                    Sight(*scene), *backend, aovs);
     ASSERT_TRUE(layers);
@@ -108,6 +108,52 @@ TEST(Aovs, OfAFileAreWhatEachPixelsRayHits) {
     }
     EXPECT_GT(hit, 100u);
     EXPECT_GT(missed, 0u);
+}
+
+std::vector<float> floats(const Layer& layer) {
+    std::vector<float> values;
+    for (const uint32_t word : layer.values)
+        values.push_back(std::bit_cast<float>(word));
+    return values;
+}
+
+/// A white square that covers the left half of a picture, and a green mirror that covers a quarter;
+/// the rest is sky. An edge goes through the middle of pixels.
+TEST(Aovs, AlbedosAreThoseOfSurfacesAndMeansOverTheSamplesOfAPixel) {
+    Scene scene;
+    Material white, mirror;
+    white.color = {0.5f, 0.6f, 0.7f};
+    mirror.optics = Optics{.boundary = Optics::Boundary::Mirror, .reflection = {0, 0.9f, 0.1f}};
+    scene.materials = {white, mirror};
+    const auto square = [](double left, double right, double bottom, double top) {
+        const vec3 a(left, bottom, 0), b(right, bottom, 0), c(right, top, 0), d(left, top, 0);
+        return Chunk::owning(dvec3(0), {a, b, c, a, c, d});
+    };
+    scene.add_mesh("white", 0, square(-2, 0.5, -2, 2));
+    scene.add_mesh("mirror", 1, square(0.5, 9, 0, 9));
+    Camera camera; // 4 x 4 pixels of size 1
+    camera.window = ImageWindow{{0, 0, -1}, {4, 0, 0}, {0, 4, 0}, /* orthographic= */ true};
+    camera.eye = {0, 0, 3};
+    const auto backend = make_cpu_backend(scene.soup);
+    for (const uint32_t samples : {1u, 16u, 64u}) {
+        const auto layers = trace_aovs(scene, Pinhole(camera, 4, 4), Sight(scene), *backend,
+                                       {.depth = true, .normal = true, .albedo = true}, samples);
+        ASSERT_TRUE(layers);
+        ASSERT_EQ(layers->size(), 7u);
+        EXPECT_EQ((*layers)[5].name, "albedo.G");
+        const std::vector<float> green = floats((*layers)[5]), z = floats((*layers)[3]);
+        EXPECT_FLOAT_EQ(green[0], 0.6f);
+        EXPECT_FLOAT_EQ(green[3], 0.9f);
+        EXPECT_FLOAT_EQ(green[15], 1) << "the sky";
+        EXPECT_FLOAT_EQ(z[0], 1);
+        EXPECT_EQ(z[15], 0);
+        // Half of the pixel at (2, 3) is white; a single ray meets the edge itself.
+        if (samples > 1) {
+            EXPECT_FLOAT_EQ(green[14], 0.8f);
+            EXPECT_FLOAT_EQ(z[14], 0.5f) << "shorter than a normal";
+        }
+        EXPECT_FLOAT_EQ(floats((*layers)[0])[0], 3) << "the depth of the middle";
+    }
 }
 
 TEST(Aovs, LeafAndPassesAreRefusedByABackendWithoutLeaves) {

@@ -6,7 +6,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 namespace ovc {
@@ -38,7 +40,7 @@ Scene corner() {
 }
 
 Image picture(const Scene& scene, Backend& backend, RenderMode mode, uint64_t seed,
-              uint32_t samples) {
+              uint32_t samples, const std::optional<Progressive>& progressive = {}) {
     Camera camera;
     camera.eye = {0.5, 2, 6};
     camera.target = {0, 0.9, 0};
@@ -49,6 +51,7 @@ Image picture(const Scene& scene, Backend& backend, RenderMode mode, uint64_t se
     options.mode = mode;
     options.max_depth = 8;
     options.seed = seed;
+    options.progressive = progressive;
     const auto report = render_picture(scene, camera, backend, options, {}, film);
     EXPECT_TRUE(report && report->complete);
     EXPECT_TRUE(report && report->rays.bounce > 0 && report->rays.shadow > 0);
@@ -68,13 +71,17 @@ struct Pixels {
     std::vector<double> mean, variance;
 };
 
-Pixels many(const Scene& scene, Backend& backend, RenderMode mode, uint64_t first_seed) {
-    constexpr uint32_t kPictures = 24;
+constexpr uint32_t kPictures = 24;
+
+/// Each has 16 samples, or is progressive.
+Pixels many(const Scene& scene, Backend& backend, RenderMode mode, uint64_t first_seed,
+            const std::optional<Progressive>& progressive = {}) {
     Pixels all{std::vector<double>(kPathSide * kPathSide),
                std::vector<double>(kPathSide * kPathSide)};
     std::vector<double> squares(kPathSide * kPathSide);
     for (uint32_t i = 0; i < kPictures; ++i) {
-        const Image image = picture(scene, backend, mode, first_seed + i, 16);
+        const Image image =
+            picture(scene, backend, mode, first_seed + i, progressive ? 1 : 16, progressive);
         for (size_t p = 0; p < image.pixels.size(); ++p) {
             all.mean[p] += double(image.pixels[p].g) / kPictures;
             squares[p] += double(image.pixels[p].g) * double(image.pixels[p].g) / kPictures;
@@ -109,6 +116,38 @@ TEST(PathModes, ConvergeToTheSameMean) {
     // Such a t has variance 46/44; the limits are five sigma of the means of n values.
     EXPECT_NEAR(sum / pixels, 0, 5 / std::sqrt(pixels));
     EXPECT_NEAR(squares / pixels, 46 / 44.0, 5 * std::sqrt(2.2 / pixels));
+}
+
+/// The reference takes the same number of samples everywhere, whatever the noise.
+TEST(PathModes, ProgressiveHasTheMeanAndTheNoiseThatWasAskedFor) {
+    constexpr double kNoise = 0.06;
+    const Scene scene = corner();
+    const std::unique_ptr<Backend> backend = make_cpu_backend(scene.soup);
+    const Pixels reference = many(scene, *backend, RenderMode::Batched, 400,
+                                  Progressive{.noise = 1e-9, .max_samples = 32});
+    const Pixels found = many(scene, *backend, RenderMode::Mixed, 300,
+                              Progressive{.noise = kNoise, .max_samples = 4096});
+    double sum = 0, errors = 0;
+    int pixels = 0;
+    for (size_t p = 0; p < found.mean.size(); ++p) {
+        const double truth = reference.mean[p];
+        const double slope = 1.055 / 2.4 * std::pow(std::clamp(truth, 0.01, 1.0), 1 / 2.4 - 1);
+        errors += slope * slope * found.variance[p] * kPictures;
+        const double sigma = std::sqrt(found.variance[p] + reference.variance[p]);
+        if (!(sigma > 0)) // sky or lamp alone
+            continue;
+        const double z = (found.mean[p] - truth) / sigma;
+        // Student's t again, of fewer degrees of freedom where the variances differ.
+        EXPECT_LT(std::abs(z), 7) << "pixel " << p;
+        sum += z;
+        ++pixels;
+    }
+    EXPECT_GT(pixels, int(kPathSide * kPathSide / 2));
+    EXPECT_NEAR(sum / pixels, 0, 5 / std::sqrt(pixels));
+    // No block is noisier; most end between two numbers of samples, and some are quiet at once.
+    const double noise = std::sqrt(errors / double(found.mean.size()));
+    EXPECT_LT(noise, 1.1 * kNoise);
+    EXPECT_GT(noise, 0.4 * kNoise);
 }
 
 } // namespace

@@ -5,6 +5,7 @@
 #include "core/system/stopwatch.h"
 #include "host/camera/camera_rays.h"
 #include "host/ranks/shared_film.h"
+#include "host/render/progressive.h"
 #include "host/render/render_batched.h"
 #include "host/render/render_mixed.h"
 #include "host/shade/path_tracer.h"
@@ -17,6 +18,9 @@
 #include <memory>
 
 namespace ovc {
+
+/// Makes another seed, whose random numbers have nothing to do with those of the first.
+static constexpr uint64_t kOtherRandomNumbers = 0x9e3779b97f4a7c15u;
 
 void RayCounts::count(RayKind kind) {
     switch (kind) {
@@ -65,12 +69,16 @@ static double cpu_seconds() {
     return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
+/// seed: of path tracing, instead of that of the options.
 static std::unique_ptr<Integrator> make_integrator(const Scene& scene, const Camera& camera,
-                                                   const RenderOptions& options) {
+                                                   const RenderOptions& options, uint64_t seed) {
     const vec3 up(glm::normalize(camera.up));
     if (options.integrator == IntegratorKind::Path)
-        return std::make_unique<PathTracer>(
-            scene, up, PathTracerOptions{options.max_depth, options.shadows, options.seed});
+        return std::make_unique<PathTracer>(scene, up,
+                                            PathTracerOptions{.max_depth = options.max_depth,
+                                                              .shadows = options.shadows,
+                                                              .seed = seed,
+                                                              .clamp = options.clamp});
     return std::make_unique<Whitted>(scene, up, options.max_depth, options.shadows);
 }
 
@@ -135,64 +143,127 @@ private:
     RenderReport report_;
 };
 
+/// Traces the camera rays of one picture, onto its film or those of its passes.
+class Tracing {
+public:
+    Tracing(const Scene& scene, const Camera& camera, Backend& backend,
+            const RenderOptions& options, const Film& film)
+        : scene_(scene),
+          camera_(camera),
+          backend_(backend),
+          options_(options),
+          pinhole_(camera, options.part.value_or(whole(film)), &scene),
+          sight_(scene, options.cutouts),
+          sampling_{.filter = options.filter, .seed = options.seed},
+          integrator_(make_integrator(scene, camera, options, options.seed)) {}
+
+    const Pinhole& pinhole() const { return pinhole_; }
+
+    /// Renders rays through pixels, or through the points if there are any. Ranks share out the
+    /// pixels of a film; else all of them are this process's.
+    Result<RenderReport> render(Film& film, SharedFilmOptions shared, const RenderObserver& observe,
+                                std::span<const dvec2> points = {}) {
+        if (!options_.ranks)
+            return trace(*integrator_,
+                         points.empty() ? CameraRays(pinhole_, film, sampling_)
+                                        : CameraRays(pinhole_, film, points),
+                         observe, film);
+        shared.rays_per_sample = // a guess
+            options_.integrator == IntegratorKind::Path ? std::clamp(options_.max_depth, 1u, 8u)
+                                                        : 1;
+        shared.first_ranks = [&](std::span<const uint32_t> pixels) {
+            return first_ranks(pixels, points);
+        };
+        const RenderPart part = [&](const RenderObserver& watch, std::vector<uint32_t> pixels) {
+            return trace(*integrator_,
+                         CameraRays(pinhole_, film.samples(), std::move(pixels), points, sampling_),
+                         watch, film);
+        };
+        return render_shared(*options_.ranks, film, shared, part, observe);
+    }
+
+    /// Renders a pass of progressive rendering.
+    Result<RenderReport> render(const Pass& pass, const RenderObserver& observe, Film& film) {
+        CameraSampling sampling = sampling_;
+        sampling.random_places = true;
+        sampling.first_sample = pass.first_sample;
+        if (pass.for_estimate) {
+            sampling.seed ^= kOtherRandomNumbers;
+            if (!for_estimate_)
+                for_estimate_ = make_integrator(scene_, camera_, options_, sampling.seed);
+        }
+        return trace(pass.for_estimate ? *for_estimate_ : *integrator_,
+                     CameraRays(pinhole_, pass.samples, pass.pixels, {}, sampling), observe, film);
+    }
+
+private:
+    static PicturePart whole(const Film& film) {
+        const ImageSize size{film.width(), film.height()};
+        return {size, 0, 0, size};
+    }
+
+    Result<RenderReport> trace(const Integrator& integrator, const CameraRays& rays,
+                               const RenderObserver& observe, Film& film) {
+        const size_t lights = scene_.lights.size();
+        // Where rays visit other ranks, a batch would wait at its end for its last answers.
+        const bool as_stream = options_.mode == RenderMode::Mixed ||
+                               (options_.ranks && backend_.statistics().ranks > 1);
+        return as_stream ? render_mixed(integrator, lights, rays, sight_, backend_, observe, film)
+                         : render_batched(integrator, lights, rays, sight_, backend_,
+                                          options_.batch_rays, observe, film);
+    }
+
+    std::vector<uint32_t> first_ranks(std::span<const uint32_t> pixels,
+                                      std::span<const dvec2> points) const {
+        std::vector<Ray> rays;
+        for (const uint32_t pixel : pixels)
+            rays.push_back(points.empty()
+                               ? pinhole_.ray(pixel % pinhole_.width(), pixel / pinhole_.width())
+                               : ray_through(pinhole_, points[pixel]));
+        return backend_.first_ranks(rays);
+    }
+
+    const Scene& scene_;
+    const Camera& camera_;
+    Backend& backend_;
+    const RenderOptions& options_;
+    const Pinhole pinhole_;
+    const Sight sight_;
+    const CameraSampling sampling_;
+    const std::unique_ptr<Integrator> integrator_;
+    std::unique_ptr<Integrator> for_estimate_; // with other random numbers
+};
+
 } // namespace
+
+static Result<RenderReport> render_by(Tracing& tracing, const RenderOptions& options, double gamma,
+                                      const RenderObserver& observe, Film& film) {
+    if (options.progressive)
+        return render_progressively(
+            *options.progressive,
+            [&](const Pass& pass, const RenderObserver& watch, Film& to) {
+                return tracing.render(pass, watch, to);
+            },
+            observe, film);
+    if (!options.antialias || film.pixels_done() > 0)
+        return tracing.render(film, {.keep = options.keep, .keep_seconds = options.keep_seconds},
+                              observe);
+    const auto render_points = [&](std::span<const dvec2> points, const RenderObserver& watch,
+                                   Film& to) {
+        return points.empty() ? RenderReport{.complete = true}
+                              : tracing.render(to, {.to_all = true}, watch, points);
+    };
+    return AdaptivePasses(tracing.pinhole(), observe, render_points)
+        .run(*options.antialias, gamma, film);
+}
 
 Result<RenderReport> render_picture(const Scene& scene, const Camera& camera, Backend& backend,
                                     const RenderOptions& options, const RenderObserver& observe,
                                     Film& film) {
     const Stopwatch watch;
     const double cpu_before = cpu_seconds();
-    const ImageSize whole{film.width(), film.height()};
-    const Pinhole pinhole(camera, options.part.value_or(PicturePart{whole, 0, 0, whole}), &scene);
-    const std::unique_ptr<Integrator> integrator = make_integrator(scene, camera, options);
-    const Sight sight(scene, options.cutouts);
-    const size_t lights = scene.lights.size();
-    // Where rays visit other ranks, a batch would wait at its end for its last answers.
-    const bool as_stream =
-        options.mode == RenderMode::Mixed || (options.ranks && backend.statistics().ranks > 1);
-    const auto trace = [&](const CameraRays& rays, const RenderObserver& watch_it, Film& to) {
-        return as_stream ? render_mixed(*integrator, lights, rays, sight, backend, watch_it, to)
-                         : render_batched(*integrator, lights, rays, sight, backend,
-                                          options.batch_rays, watch_it, to);
-    };
-    // Ranks share out the pixels of a film; else all of them are this process's.
-    const uint32_t rays_per_sample = // a guess
-        options.integrator == IntegratorKind::Path ? std::clamp(options.max_depth, 1u, 8u) : 1;
-    const auto first_ranks = [&](std::span<const dvec2> points) {
-        return [&backend, &pinhole, points](std::span<const uint32_t> pixels) {
-            std::vector<Ray> rays;
-            for (const uint32_t pixel : pixels)
-                rays.push_back(points.empty()
-                                   ? pinhole.ray(pixel % pinhole.width(), pixel / pinhole.width())
-                                   : ray_through(pinhole, points[pixel]));
-            return backend.first_ranks(rays);
-        };
-    };
-    const auto render = [&](Film& to, SharedFilmOptions shared, const RenderObserver& watch_it,
-                            std::span<const dvec2> points) {
-        if (!options.ranks)
-            return trace(points.empty() ? CameraRays(pinhole, to) : CameraRays(pinhole, to, points),
-                         watch_it, to);
-        shared.rays_per_sample = rays_per_sample;
-        shared.first_ranks = first_ranks(points);
-        const RenderPart part = [&](const RenderObserver& watch_part,
-                                    std::vector<uint32_t> pixels) {
-            return trace(CameraRays(pinhole, to.samples(), std::move(pixels), points), watch_part,
-                         to);
-        };
-        return render_shared(*options.ranks, to, shared, part, watch_it);
-    };
-    const auto render_points = [&](std::span<const dvec2> points, const RenderObserver& watch_it,
-                                   Film& to) {
-        return points.empty() ? RenderReport{.complete = true}
-                              : render(to, {.to_all = true}, watch_it, points);
-    };
-    const bool is_adaptive = options.antialias && film.pixels_done() == 0;
-    Result<RenderReport> report =
-        is_adaptive ? AdaptivePasses(pinhole, observe, render_points)
-                          .run(*options.antialias, scene.gamma, film)
-                    : render(film, {.keep = options.keep, .keep_seconds = options.keep_seconds},
-                             observe, {});
+    Tracing tracing(scene, camera, backend, options, film);
+    Result<RenderReport> report = render_by(tracing, options, scene.gamma, observe, film);
     if (!report)
         return report;
     report->pixels_done = film.pixels_done();

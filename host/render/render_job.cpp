@@ -11,6 +11,7 @@
 #include "host/film/unfinished.h"
 #include "host/output/stats.h"
 #include "host/ranks/shared_film.h"
+#include "host/render/ending.h"
 #include "host/render/frames.h"
 #include "host/render/render.h"
 #include "host/render/stage.h"
@@ -21,6 +22,7 @@
 #include "host/terminal/interrupt.h"
 #include "host/terminal/message.h"
 #include "host/terminal/progress.h"
+#include "host/terminal/progress_lines.h"
 #include "host/terminal/version.h"
 #include "importers/scene_fields.h"
 #include "importers/scene_file.h"
@@ -38,6 +40,15 @@
 namespace ovc {
 
 namespace fs = std::filesystem;
+
+/// Returns the camera with the lens that the job asks for, or its own.
+static Camera with_lens(Camera camera, const RenderJob& job) {
+    if (job.lens_radius)
+        camera.lens = *job.lens_radius > 0
+                          ? std::optional(lens_of(camera, *job.lens_radius, job.focus))
+                          : std::nullopt;
+    return camera;
+}
 
 /// Returns the camera of a single picture: the one asked for, else the scene's, else one that
 /// frames the whole scene.
@@ -76,11 +87,6 @@ static std::vector<std::string> outputs_of(const RenderJob& job, uint32_t frame)
     return outputs;
 }
 
-/// Whether this process is the one, or the first of several, which writes the outputs.
-static bool is_first_rank(const RenderJob& job) {
-    return !job.render.ranks || job.render.ranks->is_first();
-}
-
 /// Returns whether the job continues an earlier run that has finished this picture.
 static bool is_there(const RenderJob& job, uint32_t frame) {
     const std::vector<std::string> outputs = outputs_of(job, frame);
@@ -99,9 +105,10 @@ struct View {
 class Rendering {
 public:
     Rendering(const RenderJob& job, const PicturePart& part, Scene& scene, Stage& stage,
-              const InterruptGuard& interrupt, const LogSink& log)
+              const InterruptGuard& interrupt, const LogSink& log, ProgressLines& lines)
         : job_(job),
           log_(log),
+          lines_(lines),
           options_(render_options(job, part, scene)),
           scene_(scene),
           lights_(stage.lights()),
@@ -190,6 +197,8 @@ private:
              options_.cutouts, options_.seed, job_.backend.precision);
         if (const std::optional<Antialias>& how = options_.antialias)
             view(how->method, how->threshold, how->depth, how->jitter);
+        if (options_.filter != FilterOptions{} || options_.clamp > 0)
+            view(options_.filter.kind, options_.filter.radius, options_.clamp);
         Checksum sum;
         sum.add(view.bytes());
         sum.add_value(checksum_of(scene_));
@@ -203,26 +212,39 @@ private:
         return scene_.on_disk ? scene_.on_disk->checked(std::move(made)) : std::move(made);
     }
 
-    /// Converts the light of a scene with an assumed_gamma to the linear light that files hold.
-    void to_linear(Image& image) const {
-        for (vec4& pixel : image.pixels)
-            for (int i = 0; i < 3; ++i)
-                pixel[i] = linear_light(pixel[i], scene_.gamma);
-    }
-
     Result<RenderReport> trace(const View& shot, Film& film) {
+        const uint64_t pixels = uint64_t(film.width()) * film.height();
         Progress progress(backend_, is_sequence() ? fmt::format("frame {}: ", shot.frame) : "",
-                          uint64_t(film.width()) * film.height(), film.pixels_done(),
+                          pixels, film.pixels_done(),
                           /* shown= */ !job_.quiet);
         const auto observe = [&](const RenderReport& report) {
             progress.update(report);
+            lines_.progress(shot.frame, double(report.pixels_done) / double(pixels), report);
             return !interrupt_.interrupted();
         };
         RenderOptions options = options_;
         options.keep = [&](const Film& so_far) {
             return save_film(so_far, checksum_of_picture(shot), film_of(shot));
         };
+        if (options.progressive && !is_sequence())
+            options.progressive->show = [&](const Film& so_far) { show(shot, so_far); };
         return checked(render_picture(scene_, shot.camera, backend_, options, observe, film));
+    }
+
+    /// Writes the picture so far beside the outputs. Where that fails the rendering goes on, and
+    /// whoever waits for the outputs themselves is told of them.
+    void show(const View& shot, const Film& so_far) {
+        std::vector<std::string> files = outputs_of(shot);
+        for (std::string& file : files)
+            file = unfinished_picture(file);
+        if (save_picture(develop(so_far, scene_.gamma, job_.development), files, job_.development,
+                         {.png_bits = job_.png_bits}))
+            tell_of(shot, files, /* finished= */ false);
+    }
+
+    void tell_of(const View& shot, const std::vector<std::string>& files, bool finished) {
+        for (const std::string& file : files)
+            lines_.picture(shot.frame, file, finished);
     }
 
     Result<Done> save_finished(const View& shot, const Film& film, const FrameStats& frame) {
@@ -233,11 +255,14 @@ private:
         fs::remove(film_of(shot), ignored);
         for (const std::string& output : outputs)
             fs::remove(unfinished_picture(output), ignored);
+        tell_of(shot, outputs, /* finished= */ true);
         return Done{};
     }
 
     /// Saves the film where an output cannot be written, so that the picture is not lost.
     Error kept(Error error, const View& shot, const Film& film) {
+        if (options_.progressive) // a film does not say how many samples its pixels have had
+            return error;
         if (save_film(film, checksum_of_picture(shot), film_of(shot)))
             error.message += fmt::format("; the picture is kept in {}, and --continue writes it "
                                          "without rendering it again",
@@ -251,7 +276,9 @@ private:
         if (film.pixels_done() == 0)
             return Done{};
         std::vector<std::string> outputs = outputs_of(shot);
-        const Result<Done> saved = save_film(film, checksum_of_picture(shot), film_of(shot));
+        const Result<Done> saved = options_.progressive
+                                       ? Done{}
+                                       : save_film(film, checksum_of_picture(shot), film_of(shot));
         if (!saved || is_sequence())
             return saved;
         for (std::string& output : outputs)
@@ -268,31 +295,39 @@ private:
                 {"overcast:statistics", frame_json(frame)}};
     }
 
+    /// Returns the number of samples whose mean the picture shows, as far as layers need it.
+    uint32_t samples_of_layers() const {
+        return options_.progressive || options_.antialias ? kMaxSamples : job_.samples;
+    }
+
     Result<Done> save_all(const std::vector<std::string>& outputs, const View& shot,
                           const Film& film, const FrameStats& frame) {
-        Image image = film.image();
-        if (scene_.gamma != 1)
-            to_linear(image);
+        const DevelopedImage developed = develop(film, scene_.gamma, job_.development);
         FileContents contents;
         contents.png_bits = job_.png_bits;
         contents.notes = notes_of(frame);
         if (job_.aovs.any()) {
-            Result<std::vector<Layer>> traced =
-                checked(trace_aovs(scene_, Pinhole(shot.camera, *options_.part, &scene_),
-                                   Sight(scene_, options_.cutouts), backend_, job_.aovs));
+            Result<std::vector<Layer>> traced = checked(trace_aovs(
+                scene_, Pinhole(shot.camera, *options_.part, &scene_),
+                Sight(scene_, options_.cutouts), backend_, job_.aovs, samples_of_layers(),
+                {.filter = options_.filter, .seed = options_.seed}));
             if (!traced)
                 return traced.error();
             contents.layers = std::move(*traced);
         }
-        Result<Done> all = Done{};
-        for (const std::string& output : outputs)
-            if (const Result<Done> saved = save_image(image, output, contents); !saved && all)
-                all = saved;
-        return all;
+        if (const std::optional<Sampled>& found = frame.report.sampled)
+            say(log_, LogLevel::Info,
+                fmt::format("{:.1f} samples a pixel, {} to {}; noise of the noisiest block: {:.2g}",
+                            found->mean, found->min, found->max, found->noise));
+        if (developed.stops && job_.development.exposure->is_automatic)
+            say(log_, LogLevel::Info,
+                fmt::format("--exposure auto: {:+.2f} stops", *developed.stops));
+        return save_picture(developed, outputs, job_.development, std::move(contents));
     }
 
     const RenderJob& job_;
     const LogSink& log_;
+    ProgressLines& lines_;
     const RenderOptions options_;
     Scene& scene_;
     const std::vector<Light>& lights_; // as the scene or the user has them
@@ -300,37 +335,6 @@ private:
     Backend& backend_;
     const InterruptGuard& interrupt_;
 };
-
-static void report(const RenderJob& job, const RenderStats& stats,
-                   const std::vector<Omission>& omissions) {
-    if (const std::string text = omissions_text(omissions); !job.quiet && !text.empty())
-        print_message(text);
-    if (!job.quiet && stats.frames_there > 0)
-        fmt::print("{} frames were there already\n", stats.frames_there);
-    if (!job.quiet && !stats.frames.empty() && (stats.report.complete || !job.shots.empty()))
-        fmt::print("{}  wrote      {}\n", stats_summary(stats),
-                   printable(fmt::format("{}", fmt::join(job.outputs, ", "))));
-    if (stats.report.complete)
-        return;
-    const std::string_view how = stats.report.failed ? "the job has ended" : "interrupted";
-    if (job.shots.empty() && stats.report.pixels_done == 0) {
-        print_message(fmt::format("{}; no pixel was done, and nothing is saved", how));
-        return;
-    }
-    if (job.shots.empty()) {
-        print_message(fmt::format("{}; {:.0f} % of the picture is in {}, and the same command with "
-                                  "--continue goes on from there",
-                                  how,
-                                  100.0 * double(stats.report.pixels_done) /
-                                      (double(stats.width) * double(stats.height)),
-                                  unfinished_picture(job.outputs[0])));
-        return;
-    }
-    const size_t saved = stats.frames_there + stats.frames.size();
-    print_message(fmt::format("{}; {} of {} frames are saved, frame {} is the next, and "
-                              "the same command with --continue goes on from there",
-                              how, saved, job.shots.size(), job.shots[saved].frame));
-}
 
 /// Limits the threads of this process while the result lives; 0: no limit.
 static std::optional<ThreadLimit> limit_threads(uint32_t threads) {
@@ -395,7 +399,7 @@ static void tell_of_up_left_out(const RenderJob& job, const Scene& scene, const 
 /// Renders every shot in turn until one is interrupted.
 static Result<Done> render_shots(const RenderJob& job, std::span<const std::byte> there,
                                  const PicturePart& part, Stage& stage, Scene& scene,
-                                 const LogSink& log, RenderStats& stats) {
+                                 const LogSink& log, ProgressLines& lines, RenderStats& stats) {
     stats.report.complete = true;
     const InterruptGuard interrupt; // of all shots, or one between two of them would be forgotten
     const std::vector<Shot> shots =
@@ -413,15 +417,16 @@ static Result<Done> render_shots(const RenderJob& job, std::span<const std::byte
         stats.report.complete = moved || moved.error().kind != ErrorKind::Cancelled;
         if (!moved)
             return stats.report.complete ? moved : Result<Done>(Done{});
-        const View view{shot.frame, shot.camera && !job.shots.empty()
-                                        ? *shot.camera
-                                        : still_camera(scene, job, part.picture)};
+        const View view{shot.frame, with_lens(shot.camera && !job.shots.empty()
+                                                  ? *shot.camera
+                                                  : still_camera(scene, job, part.picture),
+                                              job)};
         // Nobody has checked that of a file before.
         if (const Result<Done> fine = check_camera(view.camera); !fine)
             return Error{fmt::format("{}: {}", job.scene.name(), fine.error().message)};
         begun.seconds_scene = watch.seconds();
         const Result<Done> done =
-            Rendering(job, part, scene, stage, interrupt, log).run(view, begun, stats);
+            Rendering(job, part, scene, stage, interrupt, log, lines).run(view, begun, stats);
         if (!done || !stats.report.complete)
             return done;
     }
@@ -472,53 +477,6 @@ static std::vector<Ray> camera_sample(const RenderJob& job, const PicturePart& p
     return rays;
 }
 
-/// Brings what all ranks have counted to the first one.
-static Result<Done> gather_ranks(const Ranks& ranks, RenderStats& stats) {
-    const RankStats mine{stats.tracing, stats.report.rays, host_peak_bytes(),
-                         stats.report.seconds_cpu};
-    const auto all = ranks.gather(std::as_bytes(std::span(&mine, 1)), goes_on_always);
-    if (!all)
-        return all.error();
-    RayCounts rays;
-    for (uint32_t rank = 0; rank < all->size(); ++rank) {
-        RankStats& of_rank = stats.ranks.emplace_back();
-        std::memcpy(&of_rank, (*all)[rank].data(), sizeof(of_rank));
-        stats.rank_names.push_back(ranks.name_of(rank));
-        rays += of_rank.rays;
-    }
-    stats.report.rays = rays;
-    return Done{};
-}
-
-/// Ends the job, once the first rank has saved what there is.
-[[noreturn]] static void end_all_ranks(const Ranks& ranks, int code) {
-    if (!ranks.is_first())
-        (void)ranks.spread({}, goes_on_always); // which the first one never does
-    ranks.end_all(code);
-}
-
-/// Tells the user of the run, and ends it where there are several ranks and it is not complete.
-/// Returns the exit code.
-static Result<int> tell(const RenderJob& job, const Stopwatch& total,
-                        const std::vector<Omission>& omissions, RenderStats& stats) {
-    const Ranks* const ranks = job.render.ranks;
-    if (ranks && stats.report.complete)
-        if (const Result<Done> done = gather_ranks(*ranks, stats); !done)
-            return done.error();
-    stats.seconds_total = total.seconds();
-    if (!job.stats.empty() && is_first_rank(job))
-        if (const Result<Done> done = save_text(stats_json(stats), job.stats); !done)
-            return done.error();
-    if (is_first_rank(job))
-        report(job, stats, omissions);
-    const int code = stats.report.complete ? kExitOk
-                     : stats.report.failed ? kExitError
-                                           : kExitInterrupted;
-    if (ranks && code != kExitOk)
-        end_all_ranks(*ranks, code);
-    return code;
-}
-
 static int say_all_is_there(const RenderJob& job) {
     if (!job.quiet)
         fmt::print("all is there in {}; without --continue it is rendered anew\n",
@@ -526,12 +484,9 @@ static int say_all_is_there(const RenderJob& job) {
     return kExitOk;
 }
 
-Result<int> render(const RenderJob& job) {
-    const Result<RankBytes> there = frames_there(job);
-    if (!there)
-        return there.error();
-    if (std::ranges::count(*there, std::byte(0)) == 0)
-        return say_all_is_there(job);
+/// there: whether each frame is there already.
+static Result<int> render_others(const RenderJob& job, const RankBytes& there,
+                                 ProgressLines& lines) {
     const Stopwatch total;
     const std::optional<ThreadLimit> threads = limit_threads(job.threads);
     const LogSink log = standard_error_log(job.log_level);
@@ -578,13 +533,28 @@ Result<int> render(const RenderJob& job) {
     options.saved = {}; // of the first moment
     options.sample = {};
     Stage stage(job, *scene, pictures, std::move(*backend), options);
-    Result<Done> done = render_shots(job, *there, *part, stage, *scene, log, stats);
+    Result<Done> done = render_shots(job, there, *part, stage, *scene, log, lines, stats);
     if (!done)
         return done.error();
     if (done = pictures.check(*scene); !done)
         return done.error();
     add_what_backend_tells(job, *scene, stage, stats);
     return tell(job, total, scene->omissions, stats);
+}
+
+Result<int> render(const RenderJob& job) {
+    const Result<RankBytes> there = frames_there(job);
+    if (!there)
+        return there.error();
+    if (std::ranges::count(*there, std::byte(0)) == 0)
+        return say_all_is_there(job);
+    Result<ProgressLines> lines =
+        ProgressLines::open(is_first_rank(job) ? job.progress : std::string());
+    if (!lines)
+        return lines.error();
+    const Result<int> code = render_others(job, *there, *lines);
+    lines->end(code && *code == kExitOk);
+    return code;
 }
 
 } // namespace ovc

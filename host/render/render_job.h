@@ -5,6 +5,7 @@
 #include "host/arguments/arguments.h"
 #include "host/backend/backend.h"
 #include "host/output/aov.h"
+#include "host/render/development.h"
 #include "host/render/render.h"
 #include "host/scene/scene_pictures.h"
 #include "host/scene/scene_source.h"
@@ -48,6 +49,9 @@ struct RenderJob {
     std::vector<Shot> shots; // empty: one picture, from `camera` or the scene's own
     std::vector<Light> lights;
     RenderOptions render;
+    std::optional<double> lens_radius; // of the pictures' cameras; 0: no lens; none: their own
+    std::optional<double> focus;       // the lens's distance; none: the cameras' target
+    Development development;
     std::optional<uint32_t> max_depth; // none: the scene's, else that of `render`
     uint32_t samples = 1;              // camera rays a pixel
     BackendOptions backend;
@@ -56,6 +60,7 @@ struct RenderJob {
     uint64_t texture_memory = kDefaultTextureMemory; // for the texels of pictures
     std::string cache; // the folder where scenes and levels are kept; empty: none
     std::string stats;
+    std::string progress;     // the file or "-" that ProgressLines go to; empty: none
     bool go_on = false;       // continues an interrupted run from its files
     uint32_t threads = 0;     // maximum; 0: as many as there are cores
     std::string command_line; // as the user gave it, for files that keep it

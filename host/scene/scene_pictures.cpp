@@ -12,6 +12,7 @@
 
 #include <cassert>
 #include <cmath>
+#include <filesystem>
 #include <map>
 #include <mutex>
 #include <tuple>
@@ -160,6 +161,11 @@ struct ScenePictures::Opened {
         return picture;
     }
 };
+
+bool ScenePictures::library_is_there() {
+    std::error_code ignored;
+    return std::filesystem::exists(find_plugin(kTextureLibrary), ignored);
+}
 
 ScenePictures::ScenePictures(PictureOptions options, LogSink log)
     : options_(std::move(options)), log_(std::move(log)) {}

@@ -26,6 +26,9 @@ struct PictureOptions {
 
 class ScenePictures {
 public:
+    /// Returns whether the library lies where open() looks for it. It is not loaded.
+    static bool library_is_there();
+
     ScenePictures(PictureOptions options, LogSink log);
     ~ScenePictures();
     ScenePictures(const ScenePictures&) = delete;

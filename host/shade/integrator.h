@@ -20,11 +20,12 @@ enum class RayKind : uint8_t { Camera, Reflection, Refraction, Bounce };
 /// The purpose of a ray that looks for the nearest surface.
 struct Path {
     uint32_t pixel;
-    uint32_t sample;  // the number of the pixel's camera ray that led here
-    uint16_t depth;   // surfaces that the path left on its way here
-    RayKind kind;     // how it left the last one
-    bool reflected;   // some surface has reflected it; what has no_image is seen then
-    vec3 weight;      // the pixel's share of the light at the ray's end
+    uint32_t sample;    // the number of the pixel's camera ray that led here
+    uint16_t depth;     // surfaces that the path left on its way here
+    RayKind kind;       // how it left the last one
+    bool reflected : 1; // some surface has reflected it; what has no_image is seen then
+    bool scattered : 1; // path tracing: one has, in a direction that was chosen among many
+    vec3 weight;        // the pixel's share of the light at the ray's end
     float density;    // path tracing: the density of its direction, by solid angle; 0: no other was
                       // possible
     float behind = 0; // path tracing: the distance from the ray's origin back to where the

@@ -74,7 +74,8 @@ void PathTracer::shade(std::span<const Ray> rays, std::span<const Path> paths,
         if (hits[i].is_hit())
             meet(rays[i], paths[i], hits[i], film, sides, spawned);
         else
-            film.add(paths[i].pixel, paths[i].weight * unexposed_ * seen_sky(rays[i], paths[i]));
+            film.add(paths[i].pixel,
+                     clamped(paths[i], paths[i].weight * unexposed_ * seen_sky(rays[i], paths[i])));
     for (const RayList<Path>* side : {&sides.mirrored, &sides.through, &sides.bounced})
         spawned.paths.append(*side);
 }
@@ -84,7 +85,7 @@ void PathTracer::meet(const Ray& ray, const Path& path, const Hit& hit, Film& fi
     const SurfacePoint surface = surface_point(scene_, ray, hit, path.cone);
     const double distance = double(path.behind) + hit.t * glm::length(ray.dir);
     const Met met{ray, path, hit, distance, surface, Bsdf(surface)};
-    film.add(path.pixel, path.weight * unexposed_ * seen_emission(met));
+    film.add(path.pixel, clamped(path, path.weight * unexposed_ * seen_emission(met)));
     if (path.depth >= options_.max_depth)
         return;
     const PathSampler random(options_.seed, path.pixel, path.sample);
@@ -105,6 +106,16 @@ void PathTracer::meet(const Ray& ray, const Path& path, const Hit& hit, Film& fi
     }
     if (weight != vec3(0))
         go_on(met, *scattered, weight, sides);
+}
+
+/// Returns the light without what is above PathTracerOptions::clamp, in its own color. Light that
+/// comes to the first scattering surface, and what mirrors and glass show, has little noise and
+/// stays as it is.
+vec3 PathTracer::clamped(const Path& path, const vec3& light) const {
+    const float brightest = max_component(light);
+    return options_.clamp > 0 && path.scattered && brightest > options_.clamp
+               ? light * (options_.clamp / brightest)
+               : light;
 }
 
 /// Returns the share of the light of the sky that paths bring, the rest of which shadow rays do.
@@ -144,7 +155,8 @@ void PathTracer::light_up(const Met& met, double choice, const dvec2& u, Film& f
     const double share = from->density > 0 && options_.search == LightSearch::Both
                              ? share_of(from->density, met.bsdf.density(from->towards))
                              : 1;
-    const vec3 arriving = met.path.weight * reflected * from->light * float(share) * unexposed_;
+    const vec3 arriving =
+        clamped(met.path, met.path.weight * reflected * from->light * float(share) * unexposed_);
     const bool is_shadowless = from->number != kNone && scene_.lights[from->number].shadowless;
     if (options_.shadows && !is_shadowless)
         spawned.shadows.push(from->ray, met.hit.id, {met.path.pixel, from->number, 0, arriving});
@@ -160,6 +172,7 @@ void PathTracer::go_on(const Met& met, const Scattered& scattered, const vec3& w
               uint16_t(from.depth + 1),
               RayKind::Bounce,
               /* reflected= */ true,
+              /* scattered= */ from.scattered || scattered.density > 0,
               weight,
               float(scattered.density)};
     path.cone = {from.cone.width_at(met.hit.t * glm::length(met.ray.dir)), from.cone.spread};

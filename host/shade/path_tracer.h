@@ -25,6 +25,9 @@ struct PathTracerOptions {
     bool shadows = true;
     uint64_t seed = 0;
     LightSearch search = LightSearch::Both;
+    /// The most light, in any color, that a pixel's sample gets at once by way of a surface that
+    /// scatters; the rest of it is left out. 0: no limit.
+    float clamp = 0;
 };
 
 class PathTracer final : public Integrator {
@@ -47,6 +50,7 @@ private:
     vec3 seen_emission(const Met& met) const;
     void light_up(const Met& met, double choice, const dvec2& u, Film& film,
                   Spawned& spawned) const;
+    vec3 clamped(const Path& path, const vec3& light) const;
     void go_on(const Met& met, const Scattered& scattered, const vec3& weight, Sides& sides) const;
 
     const Scene& scene_;

@@ -104,6 +104,20 @@ void expect_alike(const Estimate& a, const Estimate& b, const char* what) {
     EXPECT_NEAR(a.mean, b.mean, 5 * sigma) << what << ", sigma " << sigma;
 }
 
+/// What the camera sees at once is 0.8; after one bounce it is 0.4, after two 0.2.
+TEST(PathTracer, ClampBoundsLightThatOtherSurfacesScatterAndNothingElse) {
+    Scene scene = dark();
+    add_box(scene, optical({.diffuse = vec3(0.5f), .emission = vec3(0.8f)}), dvec3(-1), dvec3(1),
+            /* outside= */ false);
+    PathTracerOptions options{.max_depth = 2, .search = LightSearch::Paths};
+    const Camera camera = at_point(dvec3(0), {1, 0, 0});
+    for (const auto& [clamp, expected] :
+         {std::pair(0.0f, 1.4), std::pair(0.5f, 1.4), std::pair(0.3f, 1.3), std::pair(0.1f, 1.0)}) {
+        options.clamp = clamp;
+        EXPECT_NEAR(estimate(scene, camera, 2, options).mean, expected, 1e-5) << clamp;
+    }
+}
+
 TEST(PathTracer, AFurnaceGlowsAsTheSeriesOfItsBouncesSays) {
     for (const float albedo : {0.0f, 0.5f, 0.8f}) {
         Scene scene = dark();

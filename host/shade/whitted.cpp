@@ -127,7 +127,7 @@ Whitted::Met Whitted::meet(const Ray& ray, const Path& path, const Hit& hit,
         const bool reflected = path.reflected || kind == RayKind::Reflection;
         spawned.paths.push(child(), hit.id,
                            {path.pixel, path.sample, uint16_t(path.depth + deeper), kind, reflected,
-                            weight, path.density, path.behind, cone});
+                            /* scattered= */ false, weight, path.density, path.behind, cone});
     };
     follow(parts.mirror, parts.taken_by_mirror, RayKind::Reflection, 1,
            [&] { return mirror_ray(ray, met.surface); });

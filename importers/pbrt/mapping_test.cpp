@@ -252,6 +252,14 @@ TEST(PbrtMapping, CamerasSeeWhatPbrtsSee) {
     EXPECT_TRUE(flat.camera->window->orthographic);
     EXPECT_LT(glm::length(flat.camera->eye - dvec3(2, 1, -5)), 1e-12);
     EXPECT_LT(glm::length(flat.camera->window->right - dvec3(4, 0, 0)), 1e-12);
+    const Scene lens =
+        scene_of("Scale 0.5 0.5 0.5 Camera \"perspective\" \"float lensradius\" 0.25 "
+                 "\"float focaldistance\" 3");
+    ASSERT_TRUE(lens.camera->lens); // a unit of the camera is two of the world
+    EXPECT_LT(glm::length(lens.camera->lens->right - dvec3(0.5, 0, 0)), 1e-12);
+    EXPECT_LT(glm::length(lens.camera->lens->up - dvec3(0, 0.5, 0)), 1e-12);
+    EXPECT_EQ(lens.camera->lens->focus, 3) << "t, of a direction 2 long";
+    EXPECT_FALSE(scene.camera->lens);
     EXPECT_TRUE(scene_of("Camera \"environment\"").camera);
     EXPECT_FALSE(scene_of("Scale 0 1 1 Camera \"perspective\"").camera);
     EXPECT_FALSE(scene_of(kMesh).camera);

@@ -74,6 +74,11 @@ Bsdf::Bsdf(const SurfacePoint& surface) : geometric_(surface.geometric_normal) {
     choose_probabilities();
 }
 
+vec3 Bsdf::albedo() const {
+    const vec3 gloss = is_glossy_ ? gloss_.at(view_.z) : vec3(0);
+    return glm::clamp(diffuse_ + gloss + mirror_ + through_, vec3(0), vec3(1));
+}
+
 static Reflectance reflectance_of(const Optics& optics, bool from_outside) {
     using Boundary = Optics::Boundary;
     switch (optics.boundary) {

@@ -57,6 +57,10 @@ public:
     /// besides.
     vec3 through() const { return through_; }
 
+    /// Returns about the share of light that it sends towards the viewer where light comes from all
+    /// directions alike, at most 1. Mirrors and glass have what they reflect and let through.
+    vec3 albedo() const;
+
     /// Returns whether light that goes through is not bent.
     bool is_straight() const { return is_straight_; }
 

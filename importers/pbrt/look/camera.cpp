@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <numbers>
 
 namespace ovc::pbrt {
@@ -53,6 +54,16 @@ double angle_of_view(const CameraRequest& request) {
     return angle > 0 && angle < 180 ? angle : 90;
 }
 
+/// Returns nothing for a camera in which everything is sharp. A ray's direction is 1 long along the
+/// view, so that t is the distance there.
+std::optional<Lens> lens_of(const Parameters& p, const dmat4& to_world) {
+    const double radius = p.number("lensradius", 0), focus = p.number("focaldistance", 1e6);
+    if (!(radius > 0 && focus > 0 && std::isfinite(radius) && focus <= 1e100))
+        return std::nullopt;
+    return Lens{vector_through(to_world, {radius, 0, 0}), vector_through(to_world, {0, radius, 0}),
+                focus};
+}
+
 bool is_usable(const Camera& camera) {
     const ImageWindow& w = *camera.window;
     return ovc::is_finite(camera.eye) && ovc::is_finite(w.direction) && ovc::is_finite(w.right) &&
@@ -87,6 +98,7 @@ std::optional<Camera> make_camera(const CameraRequest& request, const Film& film
     camera.target = camera.eye + camera.window->direction;
     camera.up = camera.window->up;
     camera.fov_degrees = angle;
+    camera.lens = lens_of(request.parameters, to_world);
     if (is_usable(camera))
         return camera;
     diagnostics.missing("view", request.place, "the camera left out: its transform makes no view");
