@@ -47,8 +47,10 @@ Misuses misuse_create_device(Subject& s) {
     return wrong.found();
 }
 
-/// A device is there already, so that it is too late.
-ovc_result use_prepare_process(Subject&) {
+/// Devices are listed before, so that it is too late.
+ovc_result use_prepare_process(Subject& s) {
+    if (const ovc_result listed = use_list_devices(s); listed != OVC_OK)
+        return listed;
     return api().prepare_process(OVC_KERNEL_AUTO) == OVC_ERROR_INVALID_STATE ? OVC_OK
                                                                              : OVC_ERROR_INTERNAL;
 }
