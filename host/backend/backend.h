@@ -112,6 +112,7 @@ struct BackendOptions {
     bool tell_active = false; // counts pages for take_active(); two-level only
     BuildWatching watching = BuildWatching::None;
     uint64_t host_bytes = 0;              // of host memory, for a scene on a disk; 0: no limit
+    bool host_bytes_may_grow = false;     // to what the scene needs, where nobody asked for so few
     uint32_t host_shares = 1;             // so many backends share host_bytes evenly
     const SceneOnDisk* on_disk = nullptr; // what was saved lies there; outlives the backend
     ovc_ranks_own ranks_own = OVC_RANKS_OWN_AUTO; // where there are several ranks, like the next

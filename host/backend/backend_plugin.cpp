@@ -445,39 +445,6 @@ static Error why_not_built(const PluginDevice& device, ovc_scene scene,
                     disk->smallest_budget(plan.smallest_host_bytes * options.host_shares)));
 }
 
-Result<std::unique_ptr<Backend>> make_plugin_backend(PluginDevice device, const Soup& soup,
-                                                     const BackendOptions& options,
-                                                     const LogSink& log) {
-    const Result<ovc_device_info> info = device.describe();
-    if (!info)
-        return info.error();
-    Result<ovc_scene_config> config = config_of(options, *info, log);
-    if (!config)
-        return config.error();
-    std::unique_ptr<BuildWatch> watch;
-    if (options.watching != BuildWatching::None) {
-        watch = std::make_unique<BuildWatch>(options.watching == BuildWatching::Shown);
-        watch->watch(*config);
-    }
-    Result<PluginScene> scene = device.create_scene(*config);
-    if (!scene)
-        return scene.error();
-    MeshNumbers numbers;
-    if (const Result<Done> added = add_meshes(device, scene->get(), soup, numbers); !added)
-        return added.error();
-    {
-        std::optional<BuildWatch::Building> watched;
-        if (watch)
-            watched.emplace(*watch);
-        const Result<Done> done = device.checked(device.api()->commit(scene->get()));
-        if (!done)
-            return why_not_built(device, scene->get(), options, done.error());
-    }
-    return std::unique_ptr<Backend>(
-        std::make_unique<PluginBackend>(std::move(device), info->renderer, std::move(watch),
-                                        std::move(*scene), std::move(numbers), options));
-}
-
 Result<ovc_plan> make_plugin_plan(const PluginDevice& device, const Soup& soup,
                                   const BackendOptions& options, const LogSink& log) {
     const Result<ovc_device_info> info = device.describe();
@@ -503,6 +470,46 @@ Result<ovc_plan> make_plugin_plan(const PluginDevice& device, const Soup& soup,
         plan.smallest_host_bytes = options.on_disk->smallest_budget(plan.smallest_host_bytes);
     }
     return plan;
+}
+
+Result<std::unique_ptr<Backend>> make_plugin_backend(PluginDevice device, const Soup& soup,
+                                                     const BackendOptions& options,
+                                                     const LogSink& log) {
+    const Result<ovc_device_info> info = device.describe();
+    if (!info)
+        return info.error();
+    Result<ovc_scene_config> config = config_of(options, *info, log);
+    if (!config)
+        return config.error();
+    if (options.on_disk && options.host_bytes_may_grow) {
+        const Result<ovc_plan> plan = make_plugin_plan(device, soup, options, LogSink());
+        if (!plan)
+            return plan.error();
+        config->host_memory_bytes =
+            std::max<uint64_t>(config->host_memory_bytes, plan->smallest_host_bytes);
+    }
+    std::unique_ptr<BuildWatch> watch;
+    if (options.watching != BuildWatching::None) {
+        watch = std::make_unique<BuildWatch>(options.watching == BuildWatching::Shown);
+        watch->watch(*config);
+    }
+    Result<PluginScene> scene = device.create_scene(*config);
+    if (!scene)
+        return scene.error();
+    MeshNumbers numbers;
+    if (const Result<Done> added = add_meshes(device, scene->get(), soup, numbers); !added)
+        return added.error();
+    {
+        std::optional<BuildWatch::Building> watched;
+        if (watch)
+            watched.emplace(*watch);
+        const Result<Done> done = device.checked(device.api()->commit(scene->get()));
+        if (!done)
+            return why_not_built(device, scene->get(), options, done.error());
+    }
+    return std::unique_ptr<Backend>(
+        std::make_unique<PluginBackend>(std::move(device), info->renderer, std::move(watch),
+                                        std::move(*scene), std::move(numbers), options));
 }
 
 } // namespace ovc

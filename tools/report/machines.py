@@ -33,8 +33,6 @@ def rates_of(runs, threads):
 
 def simulated(rates, machine, ranks):
     on = dataclasses.replace(machine, ranks_per_node=ranks)
-    if ranks == 1:  # a process by itself sends nothing
-        on = dataclasses.replace(on, home_seconds=0)
     return model.simulate(on, scale.job_of(rates["runs"][str(ranks)], ranks))[0]
 
 
@@ -43,19 +41,18 @@ def projected(rates, machine):
     rank's cores, network and disk takes, with the rates that the simulation was fitted to. A scene
     of more triangles is deeper, never cheaper than the measured one."""
     alone = rates["runs"]["1"]
-    grown = PIXELS / alone["rays"][0]
-    rays = sum(alone["rays"]) * grown
+    grown = PIXELS / alone["primary"]
+    rays = alone["rays"] * grown
     imbalance = max(run["imbalance"] for run in rates["runs"].values())
     for triangles in (1e8, 1e9, 1e10, 1e11):
         for ranks in (1, 64, 1000):
             share = triangles * BYTES_A_TRIANGLE / ranks
             deeper = 1 + 0.06 * max(0.0, math.log2(triangles / ranks / alone["triangles"]))
-            visits = rays / ranks * (scale.visits_at(rates, ranks) if ranks > 1 else 1)
-            home = visits * machine.home_seconds if ranks > 1 else 0
-            takes = {"cores": imbalance * visits * deeper * machine.visit_seconds + home +
-                     rays / ranks * machine.shade_seconds,
-                     "network": visits * (model.VISIT_BYTES + model.ANSWER_BYTES) / NETWORK
-                     if ranks > 1 else 0,
+            here = rays / ranks
+            away = here * scale.away_at(rates, ranks)
+            takes = {"cores": imbalance * (here + away) * deeper * machine.visit_seconds +
+                     away * machine.away_seconds + here * machine.shade_seconds,
+                     "network": away * (model.VISIT_BYTES + model.ANSWER_BYTES) / NETWORK,
                      "disk": share / 2 / DISK if share > MEMORY else 0}
             limit = max(takes, key=takes.get)
             measured = alone["seconds"] * grown / ranks
@@ -72,7 +69,7 @@ def machines_figures(documents):
     machine = scale.fitted(rates)
     rows = [{"ranks": int(n), "seconds": rates["runs"][n]["seconds"],
              "simulated": simulated(rates, machine, int(n)),
-             "visits": rates["runs"][n]["visits_per_ray"],
+             "visits": rates["runs"][n]["away_per_ray"],
              "imbalance": rates["runs"][n]["imbalance"]} for n in sorted(rates["runs"], key=int)]
     for row in rows:
         row["off_percent"] = 100 * (row["simulated"] / row["seconds"] - 1)
@@ -101,7 +98,7 @@ def machines_section(f):
                    line=True)
     far.legend(columns=3)
     measured = Table("Ranks on this machine", ["ranks", "seconds", "simulated", "off %",
-                                               "visits a ray", "busiest share"], [
+                                               "visits elsewhere a ray", "busiest share"], [
         [f.n("machines", "rows", i, k) for k in ("ranks", "seconds", "simulated", "off_percent",
                                                  "visits", "imbalance")]
         for i in range(len(figures["rows"]))])
@@ -121,8 +118,8 @@ def machines_section(f):
         "cores. The projection assumes this machine's speed a rank, one rank a node, a network of ",
         f.n(*at, "network"), " and a disk of ", f.n(*at, "disk"), " bytes a second, ",
         f.n(*at, "memory"), " bytes of memory a rank, half of a larger share read once, and "
-        "visits a "
-        "ray that grow with the cube root of the ranks; it is never below the measured time of a "
+        "visits elsewhere "
+        "a ray that grow with the cube root of the ranks; it is never below the measured time of a "
         "ray."
         ]), panels=[panel, far], tables=[measured, projection])
 

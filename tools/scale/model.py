@@ -1,18 +1,21 @@
 # SPDX-License-Identifier: Apache-2.0
 """A model of ranks that share a scene out: a discrete-event simulation of a picture's rays.
 
-Each rank has a home, which sends rays off and takes their answers, a server, which traces what
-visits it in batches, and a transport. Home and server want cores of the rank's node, the transport
-its network. A call's rays go to their first stop in messages; of those that come back a part goes
-on to another. What is simulated follows docs/decisions/0031; rates are measured (scale.py).
+Each rank has a home, which begins batches of rays and shades their answers, a server, which traces
+what visits it, and a transport. Home and server want cores of the rank's node, the transport its
+network. The rays of a batch visit their own rank, and a part of them others; the next batch begins
+when all answers are there and shaded, while others are under way. What is simulated follows
+docs/decisions/0031; rates are measured (scale.py).
 """
 import dataclasses
 import heapq
 import itertools
 import math
 
-MESSAGE = 1 << 15       # visits a message at most: messages that follow each other count as one
-BATCH = 1 << 17        # visits a batch of the server at most, as in plugin/ranks/visit_server.cpp
+# As in plugin/ranks/routed_stream.cpp and visit_server.cpp, of which the last two are a thread's.
+BATCHES = 4
+MIN_BATCH, MAX_BATCH, BATCH_A_THREAD = 1 << 13, 1 << 17, 1 << 12
+SERVER_BATCH_A_THREAD = 1 << 14
 VISIT_BYTES, ANSWER_BYTES = 72, 32
 MAX_SIMULATED = 16     # ranks; of more, so many stand for all
 
@@ -22,11 +25,11 @@ class Machine:
     """What a rank runs on. Seconds are of one core, unless a device is said to trace."""
     cores: int = 2                 # of a node
     ranks_per_node: int = 1
-    visit_seconds: float = 1e-6    # of the server, a visit, on `server_cores` cores
-    server_cores: int = 1
-    batch_seconds: float = 1e-3    # of the server, a batch, besides its visits
-    home_seconds: float = 1e-7     # of the home, a visit: to send it off and take its answer
-    shade_seconds: float = 1e-7    # of the home, a ray, between calls
+    threads: int = 1               # of a rank
+    visit_seconds: float = 1e-6    # of the server, a visit that it traces
+    batch_seconds: float = 2e-4    # of the server, a batch, besides its visits
+    away_seconds: float = 1e-6     # of home and server together, a visit elsewhere, besides tracing
+    shade_seconds: float = 1e-7    # of the home, a ray
     message_seconds: float = 2e-6  # of latency, a message
     message_cpu: float = 1e-6      # of the home, a message
     bandwidth: float = 1e10        # bytes a second, of a node each way; no limit within a node
@@ -35,11 +38,11 @@ class Machine:
 
 @dataclasses.dataclass
 class Job:
-    """A picture. rays: of each call one after the other, over all ranks."""
+    """A picture of so many rays, over all ranks."""
     ranks: int
-    rays: list
-    visits_per_ray: float
-    imbalance: float = 1.0         # the busiest share's visits to the mean
+    rays: float
+    away_per_ray: float            # visits to other ranks
+    imbalance: float = 1.0         # the busiest rank's visits of others to the mean
     disk_bytes: float = 0          # that are read, over all ranks
 
 
@@ -50,14 +53,28 @@ class Resource:
         self.free = [0.0] * count
         self.busy = 0.0
 
-    def take(self, now, seconds, servants=1):
-        begin = now
-        for _ in range(min(servants, len(self.free))):
-            begin = max(begin, heapq.heappop(self.free))
-        for _ in range(min(servants, len(self.free))):
-            heapq.heappush(self.free, begin + seconds)
-        self.busy += seconds * servants
+    def take(self, now, seconds):
+        begin = max(now, heapq.heappop(self.free))
+        heapq.heappush(self.free, begin + seconds)
+        self.busy += seconds
         return begin + seconds
+
+
+class Batch:
+    """Rays of a home under way, and the messages of them that have not come back."""
+
+    def __init__(self, rays):
+        self.rays, self.messages = rays, 0
+
+
+class Rank:
+    def __init__(self, rays, unread):
+        self.rays_left, self.unread = rays, unread
+        self.batches = 0           # under way
+        self.home_free = 0.0       # the home is one thread
+        self.waiting = []          # (home, batch, visits), which the server traces next
+        self.serving = False
+        self.end = 0.0
 
 
 class Simulation:
@@ -69,17 +86,11 @@ class Simulation:
         self.cores = [Resource(machine.cores) for _ in range(nodes)]
         self.network = [Resource(1) for _ in range(nodes)]
         self.disks = [Resource(1) for _ in range(nodes)]
-        self.waiting = [[] for _ in range(self.shown)]
-        self.serving = [False] * self.shown
-        self.call = [-1] * self.shown
-        self.away = [0] * self.shown  # messages of a home that are on their way or elsewhere
-        self.ends = [0.0] * self.shown
-        self.unread = job.disk_bytes / job.ranks
+        self.ranks = [Rank(job.rays / job.ranks, job.disk_bytes / job.ranks)
+                      for _ in range(self.shown)]
         mean = (job.ranks - job.imbalance) / max(job.ranks - 1, 1)
-        self.weights = [(job.imbalance if rank == 0 else mean) / self.shown
-                        for rank in range(self.shown)]
-        scale = 1 / sum(self.weights)
-        self.weights = [weight * scale for weight in self.weights]
+        self.weights = [job.imbalance if rank == 0 else mean for rank in range(self.shown)]
+        self.batch_rays = min(max(BATCH_A_THREAD * machine.threads, MIN_BATCH), MAX_BATCH)
 
     def node(self, rank):
         return rank // self.machine.ranks_per_node
@@ -88,96 +99,111 @@ class Simulation:
         heapq.heappush(self.events, (time, next(self.order), what, arguments))
 
     def run(self):
-        """Returns the seconds of the picture and what limits it."""
+        """Returns the seconds of the picture, of its cores together, and what limits it."""
         for rank in range(self.shown):
-            self.at(0.0, self.next_call, rank)
+            for _ in range(BATCHES):
+                self.begin(rank)
         while self.events:
             self.now, _, what, arguments = heapq.heappop(self.events)
             what(*arguments)
-        seconds = max(self.ends)
+        seconds = max(rank.end for rank in self.ranks)
         used = {"cores": max(r.busy / len(r.free) for r in self.cores),
                 "network": max(r.busy for r in self.network),
                 "disk": max(r.busy for r in self.disks)}
         limit = max(used, key=used.get)
-        return seconds, limit if used[limit] > 0.5 * seconds else "waiting"
+        return (seconds, sum(r.busy for r in self.cores) * self.job.ranks / self.shown,
+                limit if used[limit] > 0.5 * seconds else "waiting")
 
-    def next_call(self, rank):
-        self.call[rank] += 1
-        if self.call[rank] == len(self.job.rays):
-            self.ends[rank] = self.now
-            return
-        rays = self.job.rays[self.call[rank]] / self.job.ranks
-        done = self.cores[self.node(rank)].take(self.now, rays * self.machine.shade_seconds)
+    def at_home(self, rank, seconds):
+        """Returns when the home has worked for so long, on one core."""
+        home = self.ranks[rank]
+        home.home_free = self.cores[self.node(rank)].take(max(self.now, home.home_free), seconds)
+        return home.home_free
+
+    def begin(self, rank):
+        home = self.ranks[rank]
+        rays = min(self.batch_rays, home.rays_left)
         if rays < 1e-9:
-            self.at(done, self.next_call, rank)
-        else:
-            self.at(done, self.send_off, rank, rays, None)
-
-    def send_off(self, home, visits, but):
-        """Sends visits of a home's rays to all ranks but one, by the weights of their shares."""
-        total = sum(w for rank, w in enumerate(self.weights) if rank != but)
-        for rank in range(self.shown):
-            if rank == but:
-                continue
-            rest = visits * self.weights[rank] / total
-            while rest > 1e-9:
-                count = min(rest, MESSAGE)
-                rest -= count
-                self.away[home] += 1
-                self.send(home, rank, count, VISIT_BYTES, self.arrive)
-
-    def send(self, home, other, count, size, then):
-        """A message between a home and another rank; then(other, home, count) when it is there."""
-        machine, job = self.machine, self.job
-        sender = home if then == self.arrive else other
-        # One simulated rank stands for several, each of which gets a message of its own.
-        messages = max(1.0, min(count, job.ranks / self.shown))
-        cpu = count * machine.home_seconds / 2 + messages * machine.message_cpu
-        sent = self.cores[self.node(sender)].take(self.now, cpu)
-        if self.node(home) != self.node(other):
-            sent = self.network[self.node(sender)].take(sent, count * size / machine.bandwidth)
-            sent += machine.message_seconds
-        self.at(sent, then, other, home, count)
-
-    def arrive(self, rank, home, count):
-        self.waiting[rank].append((home, count))
-        self.serve(rank)
-
-    def serve(self, rank):
-        if self.serving[rank] or not self.waiting[rank]:
+            home.end = self.now
             return
-        self.serving[rank] = True
-        batch, visits = [], 0.0
-        while self.waiting[rank] and visits < BATCH:
-            batch.append(self.waiting[rank].pop(0))
-            visits += batch[-1][1]
-        machine = self.machine
+        home.rays_left -= rays
+        self.at(self.now, self.arrive, rank, rank, Batch(rays), rays)
+
+    def arrive(self, other, home, batch, visits):
+        # Those of others go first.
+        waiting = self.ranks[other].waiting
+        place = len(waiting) if home == other else sum(1 for w in waiting if w[0] != other)
+        waiting.insert(place, (home, batch, visits))
+        self.serve(other)
+
+    def serve(self, number):
+        rank, machine = self.ranks[number], self.machine
+        if rank.serving or not rank.waiting:
+            return
+        rank.serving = True
+        taken, visits, away = [], 0.0, 0.0
+        while rank.waiting and (not taken or visits + rank.waiting[0][2] <=
+                                SERVER_BATCH_A_THREAD * machine.threads):
+            taken.append(rank.waiting.pop(0))
+            visits += taken[-1][2]
+            away += taken[-1][2] if taken[-1][0] != number else 0
         begun = self.now
-        if self.unread > 0:  # pages of the share come from the disk once
-            part = min(self.unread, self.job.disk_bytes / self.job.ranks / 8)
-            self.unread -= part / self.shown
-            begun = self.disks[self.node(rank)].take(self.now, part / machine.disk)
-        seconds = machine.batch_seconds + visits * machine.visit_seconds
-        done = self.cores[self.node(rank)].take(begun, seconds, machine.server_cores)
-        self.at(done, self.served, rank, batch)
+        if rank.unread > 0:  # pages of the share come from the disk once
+            part = min(rank.unread, self.job.disk_bytes / self.job.ranks / 8)
+            rank.unread -= part
+            begun = self.disks[self.node(number)].take(self.now, part / machine.disk)
+        seconds = (machine.batch_seconds + visits * machine.visit_seconds +
+                   away * machine.away_seconds / 2)
+        done = self.cores[self.node(number)].take(begun, seconds)
+        self.at(done, self.served, number, taken)
 
-    def served(self, rank, batch):
-        self.serving[rank] = False
-        for home, count in batch:
-            self.send(home, rank, count, ANSWER_BYTES, self.come_home)
-        self.serve(rank)
+    def served(self, number, taken):
+        self.ranks[number].serving = False
+        for home, batch, visits in taken:
+            if home == number:
+                self.send_away(home, batch)
+            else:
+                self.send(self.now, number, home, visits * ANSWER_BYTES, self.come_home, home,
+                          batch)
+        self.serve(number)
 
-    def come_home(self, rank, home, count):
-        further = count * (1 - 1 / self.job.visits_per_ray)
-        if self.shown == 1 or further < 0.5:
-            further = 0
-        self.away[home] -= 1
-        if further:
-            self.send_off(home, further, rank)
-        elif self.away[home] == 0:
-            self.next_call(home)
+    def send_away(self, home, batch):
+        """Sends a part of a batch's rays to other ranks, by the weights of their shares."""
+        visits = batch.rays * self.job.away_per_ray if self.job.ranks > 1 else 0
+        total = sum(w for rank, w in enumerate(self.weights) if rank != home)
+        for other in range(self.shown):
+            count = visits * self.weights[other] / total if total and other != home else 0
+            if count < 1e-9:
+                continue
+            batch.messages += 1
+            # One simulated rank stands for several, each of which gets a message of its own.
+            messages = max(1.0, min(count, self.job.ranks / self.shown))
+            done = self.at_home(home, count * self.machine.away_seconds / 2 +
+                                messages * self.machine.message_cpu)
+            self.send(done, home, other, count * VISIT_BYTES, self.arrive, other, home, batch,
+                      count)
+        if batch.messages == 0:
+            self.shade(home, batch)
+
+    def send(self, now, sender, to, size, then, *arguments):
+        if self.node(sender) != self.node(to):
+            now = self.network[self.node(sender)].take(now, size / self.machine.bandwidth)
+        self.at(now + self.machine.message_seconds, then, *arguments)
+
+    def come_home(self, home, batch):
+        batch.messages -= 1
+        if batch.messages == 0:
+            self.shade(home, batch)
+
+    def shade(self, home, batch):
+        self.at(self.at_home(home, batch.rays * self.machine.shade_seconds), self.begin, home)
 
 
 def simulate(machine, job):
-    """Returns (seconds of the picture, what limits it: cores, network, disk or waiting)."""
+    """Returns (seconds of the picture, of its cores together, what limits it: cores, network, disk
+    or waiting)."""
+    if job.ranks == 1 and not job.disk_bytes and machine.threads == 1:
+        # A process by itself traces and shades in turn.
+        seconds = job.rays * (machine.visit_seconds + machine.shade_seconds)
+        return seconds, seconds, "cores"
     return Simulation(machine, job).run()
