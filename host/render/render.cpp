@@ -5,6 +5,7 @@
 #include "core/system/stopwatch.h"
 #include "host/camera/camera_rays.h"
 #include "host/ranks/shared_film.h"
+#include "host/render/radiosity.h"
 #include "host/render/render_batched.h"
 #include "host/render/render_mixed.h"
 #include "host/shade/path_tracer.h"
@@ -66,12 +67,13 @@ static double cpu_seconds() {
 }
 
 static std::unique_ptr<Integrator> make_integrator(const Scene& scene, const Camera& camera,
-                                                   const RenderOptions& options) {
+                                                   const RenderOptions& options,
+                                                   const BouncedLight* bounced) {
     const vec3 up(glm::normalize(camera.up));
     if (options.integrator == IntegratorKind::Path)
         return std::make_unique<PathTracer>(
             scene, up, PathTracerOptions{options.max_depth, options.shadows, options.seed});
-    return std::make_unique<Whitted>(scene, up, options.max_depth, options.shadows);
+    return std::make_unique<Whitted>(scene, up, options.max_depth, options.shadows, bounced);
 }
 
 namespace {
@@ -144,8 +146,18 @@ Result<RenderReport> render_picture(const Scene& scene, const Camera& camera, Ba
     const double cpu_before = cpu_seconds();
     const ImageSize whole{film.width(), film.height()};
     const Pinhole pinhole(camera, options.part.value_or(PicturePart{whole, 0, 0, whole}), &scene);
-    const std::unique_ptr<Integrator> integrator = make_integrator(scene, camera, options);
     const Sight sight(scene, options.cutouts);
+    // Path tracing finds this light by itself. Ranks whose pieces of the picture ask together
+    // cannot ask for it alone.
+    const bool gathers = options.integrator == IntegratorKind::Whitted && !options.ranks;
+    Result<std::shared_ptr<const BouncedLight>> bounced = std::shared_ptr<const BouncedLight>();
+    if (gathers)
+        bounced = gather_bounced_light(scene, pinhole, sight, backend,
+                                       {options.max_depth, options.shadows});
+    if (!bounced)
+        return bounced.error();
+    const std::unique_ptr<Integrator> integrator =
+        make_integrator(scene, camera, options, bounced->get());
     const size_t lights = scene.lights.size();
     const bool waits_for_ranks = options.ranks && backend.statistics().ranks > 1;
     const auto trace = [&](const CameraRays& rays, const RenderObserver& watch_it, Film& to) {
