@@ -52,10 +52,10 @@ struct Finish {
 
 /// Light that went a distance through the inside of a solid keeps a share of 1 / (1 + (way /
 /// distance) ^ power), or of exp(-way / distance) for a power of 1,000 or more. The rest of a
-/// component of light keeps the share of `color`.
+/// component of light keeps the share of `color`. With a power of 0 shadows keep all light.
 struct Absorption {
     float distance = 0; // above 0
-    float power = 0;
+    float power = 0;    // at least 0
     vec3 color{0};
 
     bool operator==(const Absorption&) const = default;
@@ -128,6 +128,9 @@ struct Material {
     /// into Scene::materials. This material then only says what the rest of the scene asks of it.
     std::optional<PlacedTexture> mix;
     std::optional<Absorption> absorption; // of light that comes to the surface from inside
+    /// POV-Ray's substitute for focused light: shadow rays that pass the surface are multiplied by
+    /// 1 + cosine ^ (45 x caustics), with the angle to the normal; 0: they are not.
+    float caustics = 0;
     /// The material of the surface's inner side, an index into Scene::materials; kNone: this one.
     uint32_t inside = kNone;
 
@@ -205,6 +208,9 @@ struct Light {
     double fade_power = 0;
     /// The light stands for emitters or the sky, whose light path tracing finds by itself.
     bool stand_in = false;
+    /// Shadow rays go to position + shadow_offset, a point of an area light whose light has its
+    /// direction and strength from its middle, as POV-Ray's has without area_illumination.
+    dvec3 shadow_offset{0};
 };
 
 /// The image is a window at the end of `direction` from the eye, `right` wide and `up` high
@@ -292,6 +298,15 @@ struct Background {
     bool operator==(const Background&) const = default;
 };
 
+/// Diffuse light that goes from surface to surface, as POV-Ray's radiosity. Finishes reflect it in
+/// place of their ambient light.
+struct Radiosity {
+    uint32_t bounces = 2; // at least 1: from lit surfaces, from those that they light, …
+    float brightness = 1; // multiplies the light of the bounces
+
+    bool operator==(const Radiosity&) const = default;
+};
+
 /// The Scene::gamma that stands for sRGB's curve instead of a power.
 inline constexpr double kSrgbGamma = 0;
 
@@ -342,6 +357,7 @@ struct Scene {
     std::optional<ImageSize> size;     // of the picture, where the file asks for one
     std::optional<uint32_t> max_depth; // reflections and refractions in a row; none: the host's
     Background background;
+    std::optional<Radiosity> radiosity;
     float exposure = 1; // lights, background and emission were multiplied by it to fit a picture
     /// POV-Ray's assumed_gamma: a rendered value ^ gamma is linear light. Or kSrgbGamma.
     double gamma = 1;

@@ -91,13 +91,17 @@ void each_field(auto& io, Some<Optics> auto& o) {
     io(o.diffuse, o.boundary, o.reflection, o.through, o.ior, o.width, o.emission, o.two_sided);
 }
 
+void each_field(auto& io, Some<Radiosity> auto& r) {
+    io(r.bounces, r.brightness);
+}
+
 void each_field(auto& io, Some<Absorption> auto& a) {
     io(a.distance, a.power, a.color);
 }
 
 void each_field(auto& io, Some<Material> auto& m) {
     io(m.name, m.color, m.mirror, m.transmission, m.filter, m.ior, m.finish, m.optics, m.texture,
-       m.bump, m.normal_map, m.maps, m.under, m.absorption, m.inside, m.mix);
+       m.bump, m.normal_map, m.maps, m.under, m.absorption, m.caustics, m.inside, m.mix);
 }
 
 void each_field(auto& io, Some<Cutout> auto& c) {
@@ -110,8 +114,8 @@ void each_field(auto& io, Some<SpotCone> auto& c) {
 }
 
 void each_field(auto& io, Some<Light> auto& l) {
-    io(l.position, l.color, l.on_camera, l.direction, l.cone, l.parallel, l.shadowless,
-       l.fade_distance, l.fade_power, l.stand_in);
+    io(l.position, l.color, l.shadow_offset, l.on_camera, l.direction, l.cone, l.parallel,
+       l.shadowless, l.fade_distance, l.fade_power, l.stand_in);
 }
 
 void each_field(auto& io, Some<ImageWindow> auto& w) {
@@ -152,7 +156,8 @@ void each_field(auto& io, Some<MeshInfo> auto& m) {
 /// Passes all fields except meshes, soup, and what the file's other parts hold.
 void each_field(auto& io, Some<Scene> auto& s) {
     io(s.name, s.materials, s.textures, s.pictures, s.bumps, s.cutouts, s.lights, s.may_add_light,
-       s.camera, s.size, s.max_depth, s.background, s.exposure, s.gamma, s.omissions, s.instancing);
+       s.camera, s.size, s.max_depth, s.background, s.radiosity, s.exposure, s.gamma, s.omissions,
+       s.instancing);
 }
 
 void each_field(auto& io, Some<FileStamp> auto& f) {

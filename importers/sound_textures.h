@@ -18,7 +18,9 @@ inline bool is_sound(const Pattern& pattern) {
     const auto finite = [](double x) { return std::isfinite(x); };
     const bool steps =
         std::all_of(pattern.steps.begin(), pattern.steps.end(), [](const TextureStep& step) {
-            return step.kind <= TextureStep::Kind::BlackHole &&
+            return step.kind <= TextureStep::Kind::Planar &&
+                   (step.kind < TextureStep::Kind::Cylindrical ||
+                    (step.rows[0].x >= 0 && step.rows[0].x <= 2)) &&
                    (step.kind != TextureStep::Kind::Turbulence ||
                     (step.rows[1].y >= 0 && step.rows[1].y <= double(kMaxOctaves)));
         });

@@ -74,9 +74,9 @@ std::vector<Face> cornell_box() {
     return box;
 }
 
-class Radiosity {
+class PatchRadiosity {
 public:
-    explicit Radiosity(std::vector<Face> faces) : faces_(std::move(faces)) {
+    explicit PatchRadiosity(std::vector<Face> faces) : faces_(std::move(faces)) {
         for (const Face& face : faces_)
             for (int i = 0; i < face.cuts; ++i)
                 for (int j = 0; j < face.cuts; ++j)
@@ -240,7 +240,7 @@ constexpr struct {
 
 void compare(const Scene& scene) {
     const std::vector<Face> faces = cornell_box();
-    const Radiosity radiosity(faces);
+    const PatchRadiosity radiosity(faces);
     const std::unique_ptr<Backend> backend = make_cpu_backend(scene.soup);
     for (const auto& point : kPoints) {
         const Face& face = faces[point.face];

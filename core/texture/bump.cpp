@@ -84,6 +84,21 @@ dvec3 waved(const Pattern& pattern, Bump::Kind kind, const dvec3& at) {
     return sum / double(kWaveSources);
 }
 
+/// Returns the slope of the triangle of the texel and two in the next row, to its left and right.
+dvec3 against_brightness(const Around& around, const Bump& bump) {
+    const Texture& texture = around.textures[bump.pattern.texture];
+    if (!texture.image || !texture.image->lookup)
+        return dvec3(0);
+    const dvec2 texel = 1.0 / texture.image->lookup->size();
+    const auto height = [&](double right, double down) {
+        TexturePoint near = point_of(around, bump);
+        near.at += dvec3(right * texel.x, -down * texel.y, 0);
+        return double(gray(color_at(around.textures, bump.pattern.texture, near).rgb));
+    };
+    const double left = height(-1, 1), right = height(1, 1);
+    return {0.5 * (left - right), 0.5 * (left + right) - height(0, 0), 0};
+}
+
 dvec3 quilted_slope(const Pattern& pattern, const dvec3& at) {
     const dvec3 off = at - glm::floor(at) - 0.5;
     return quilted_curve(pattern, glm::length(off)) / std::sqrt(0.75) * off;
@@ -92,6 +107,8 @@ dvec3 quilted_slope(const Pattern& pattern, const dvec3& at) {
 dvec3 tilt(const Around& around, const Bump& bump) {
     if (bump.kind == Bump::Kind::Height)
         return against_slope(around, bump);
+    if (bump.kind == Bump::Kind::Picture)
+        return against_brightness(around, bump);
     const Pattern& pattern = pattern_of(around, bump);
     const dvec3 where = evaluate(around.textures, pattern, point_of(around, bump)).at.at;
     switch (bump.kind) {

@@ -21,8 +21,9 @@ struct Bump {
     /// Height tilts against the slope of the pattern's value. The next three add noise to the
     /// normal: three noises, those times the cube of the noise, or the sum of their magnitudes in
     /// octaves. Ripples and Waves tilt it along the waves that run over the surface. Quilted tilts
-    /// it away from the middle of a cell, and Facets snaps it to that of a cell's point. Mix adds
-    /// up the normals of `parts`, one for each stop of the texture, in proportion.
+    /// it away from the middle of a cell, and Facets snaps it to that of a cell's point. Picture
+    /// tilts it against the slope of the brightness of three texels of a planar image. Mix adds up
+    /// the normals of `parts`, one for each stop of the texture, in proportion.
     enum class Kind : uint64_t {
         Height,
         Noise,
@@ -32,6 +33,7 @@ struct Bump {
         Waves,
         Quilted,
         Facets,
+        Picture,
         Mix
     };
 

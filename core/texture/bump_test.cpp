@@ -122,6 +122,46 @@ TEST(Bump, MixesNormalsAsPovrayDoes) {
     }
 }
 
+/// A picture of 16 x 16 grays that are 0 except at three texels.
+class ThreeTexels final : public ImageLookup {
+public:
+    ThreeTexels(double here, double left, double right) : codes_{here, left, right} {}
+
+    vec4 color(const PictureArea& area) const override {
+        const int x = int(std::floor(16 * area.st.x)), down = 15 - int(std::floor(16 * area.st.y));
+        const bool here = down == 9 && x == 7, left = down == 10 && x == 6;
+        const bool right = down == 10 && x == 8;
+        const double code = here ? codes_[0] : left ? codes_[1] : right ? codes_[2] : 0;
+        return vec4(vec3(float(code / 255)), 1);
+    }
+    dvec2 size() const override { return dvec2(16); }
+    bool has_opacity() const override { return false; }
+
+private:
+    double codes_[3];
+};
+
+TEST(Bump, TiltsNormalsByThreeTexelsAsPovrayDoes) {
+    // povray's normals of bump_map { png … bump_size 1 } at the middle of a texel, whose code
+    // comes first, then those of the texels below it to the left and right.
+    const struct {
+        double codes[3];
+        dvec3 expected;
+    } kAsked[] = {{{123, 120, 126}, {-0.01177, 0.00001, -0.99992}},
+                  {{136, 119, 134}, {-0.02938, -0.03719, -0.99887}}};
+    for (const auto& asked : kAsked) {
+        const ThreeTexels lookup(asked.codes[0], asked.codes[1], asked.codes[2]);
+        Texture texture{.kind = TextureKind::Image, .image = ImageTexture{}};
+        texture.image->lookup = &lookup;
+        Bump bump{.kind = Bump::Kind::Picture, .amount = 1};
+        bump.pattern.to_texture = {dvec4(1, 0, 0, 0), dvec4(0, 1, 0, 0), dvec4(0, 0, 1, 0)};
+        const dvec3 normal = bumped(std::vector<Texture>{texture}, {}, bump,
+                                    {7.5 / 16, 1 - 9.5 / 16, 0}, {0, 0, -1}, {0, 0, 1});
+        EXPECT_LT(glm::length(normal - asked.expected), 1e-4)
+            << normal.x << " " << normal.y << " " << normal.z;
+    }
+}
+
 TEST(Bump, IsStretchedWithItsPattern) {
     // povray's normals of bumps 0.5 scale <0.2, 1, 0.5> rotate 30*z.
     Bump bump{.kind = Bump::Kind::Noise, .amount = 0.5};

@@ -82,6 +82,60 @@ double superellipsoid(Arguments a) {
     return 1 - std::pow(all, north / 2);
 }
 
+NoiseKind noise_kind(double number) {
+    return number < 1.5 ? NoiseKind::Original : NoiseKind::Corrected;
+}
+
+/// The arguments of Musgrave's fractals: a point, H, lacunarity, octaves, offset, one more, and the
+/// kind of noise.
+struct Fractal {
+    explicit Fractal(Arguments a)
+        : point(a[0], a[1], a[2]),
+          lacunarity(a[4]),
+          fading(std::pow(a[4], -a[3])),
+          octaves(int(std::clamp(std::ceil(a[5]), 1.0, 64.0))),
+          offset(a[6]),
+          extra(a[7]),
+          kind(noise_kind(a[8])) {}
+
+    /// Returns the noise of an octave, from -1 to 1.
+    double octave(int i) const { return 2 * noise(std::pow(lacunarity, i) * point, kind) - 1; }
+
+    dvec3 point;
+    double lacunarity;
+    double fading; // the share of an octave in the one before
+    int octaves;
+    double offset;
+    double extra;
+    NoiseKind kind;
+};
+
+/// Musgrave's ridged multifractal, whose gain is `extra`.
+/// Based on: Ebert and others, "Texturing and Modeling", chapter "Procedural Fractal Terrains".
+double ridged_multifractal(Arguments a) {
+    const Fractal f(a);
+    double sum = 0, signal = 0, share = 1;
+    for (int i = 0; i < f.octaves; ++i, share *= f.fading) {
+        const double weight = i == 0 ? 1 : std::clamp(signal * f.extra, 0.0, 1.0);
+        const double ridge = f.offset - std::abs(f.octave(i));
+        signal = ridge * ridge * weight;
+        sum += signal * share;
+    }
+    return sum;
+}
+
+/// Musgrave's hetero terrain. POV-Ray multiplies octaves by the sum before them to the power of
+/// the whole part of T, where Musgrave's power is 1.
+double hetero_terrain(Arguments a) {
+    const Fractal f(a);
+    double sum = 0, share = 1;
+    for (int i = 0; i < f.octaves; ++i, share *= f.fading) {
+        const double step = share * (f.octave(i) + f.offset);
+        sum += i == 0 ? step : step * std::pow(sum, std::floor(f.extra));
+    }
+    return sum;
+}
+
 } // namespace
 
 std::span<const FloatFunction> float_functions() {
@@ -92,10 +146,14 @@ InternalFunction internal_function(uint32_t number) {
     switch (number) {
     case 17: // f_ellipsoid
         return {6, [](Arguments a) { return std::hypot(a[0] * a[3], a[1] * a[4], a[2] * a[5]); }};
+    case 29: // f_hetero_mf
+        return {9, hetero_terrain};
     case 47: // f_ph, the angle from y
         return {3, [](Arguments a) { return std::atan2(std::hypot(a[0], a[2]), a[1]); }};
     case 57: // f_r
         return {3, radius};
+    case 59: // f_ridged_mf
+        return {9, ridged_multifractal};
     case 60: // f_rounded_box
         return {7, rounded_box};
     case 61: // f_sphere
@@ -110,10 +168,7 @@ InternalFunction internal_function(uint32_t number) {
     case 76: // f_noise3d
         return {3, [](Arguments a) { return noise({a[0], a[1], a[2]}); }};
     case 78: // f_noise_generator
-        return {4, [](Arguments a) {
-                    return noise({a[0], a[1], a[2]},
-                                 a[3] < 1.5 ? NoiseKind::Original : NoiseKind::Corrected);
-                }};
+        return {4, [](Arguments a) { return noise({a[0], a[1], a[2]}, noise_kind(a[3])); }};
     default:
         return {};
     }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/texture/pattern.h"
+#include "core/texture/warp.h"
 
 #include <gtest/gtest.h>
 
@@ -175,11 +176,50 @@ TEST(Pattern, TakesTheValuesOfAGrid) {
     EXPECT_NEAR(evaluate({}, pattern, dvec3(0.25, 0.5, 0.5)).value, 0.5, 1e-12);
 }
 
+/// povray's values, and those of planes through whole numbers whose corners are floats.
+TEST(Pattern, AGradientBeginsAnewAtWholeNumbersFromTwoOn) {
+    const Pattern pattern{
+        .kind = Kind::Gradient, .parameters = {0, 1, 0}, .frequency = 2.5, .phase = 0.1};
+    EXPECT_NEAR(evaluate({}, pattern, dvec3(0, -0.7, 0)).value, 0.35001, 2e-5);
+    EXPECT_NEAR(evaluate({}, pattern, dvec3(0, 2.3, 0)).value, 0.85, 1e-6);
+    Pattern plain{.kind = Kind::Gradient, .parameters = {0, 1, 0}};
+    for (const double off : {-1e-7, 0.0, 1e-7}) {
+        EXPECT_EQ(evaluate({}, plain, dvec3(0, off, 0)).value, 0);
+        EXPECT_EQ(evaluate({}, plain, dvec3(0, 1 + off, 0)).value, 1);
+        EXPECT_EQ(evaluate({}, plain, dvec3(0, 2 + off, 0)).value, 0);
+    }
+}
+
 TEST(Pattern, DrawsPointsTowardsABlackHole) {
     Pattern pattern{.kind = Kind::Gradient, .parameters = {1, 0, 0}};
     pattern.steps = {{TextureStep::Kind::BlackHole, {dvec4(0, 0, 0, 1), dvec4(1, 2, 0, 0)}}};
     EXPECT_NEAR(evaluate({}, pattern, dvec3(0.5, 0, 0)).value, 0.625, 1e-12);
     EXPECT_NEAR(evaluate({}, pattern, dvec3(0.5, 2, 0)).value, 0.5, 1e-12);
+}
+
+/// povray 3.7.0.10 prints these coordinates at (-0.5, 0.2, 1.1) for gradients that are warped.
+TEST(Pattern, WrapsPlanesAsPovrayDoes) {
+    using Step = TextureStep::Kind;
+    const struct {
+        Step kind;
+        dvec3 numbers; // axis, dist_exp, radius or height
+        dvec3 expected;
+    } kAsked[] = {{Step::Cylindrical, {2, 0, 0}, {0.3179, 0.2, 1.2083}},
+                  {Step::Cylindrical, {1, 0, 0}, {0.3179, -1.2083, 0.2}},
+                  {Step::Cylindrical, {0, 0, 0}, {1.2083, 0.2, -0.3179}},
+                  {Step::Cylindrical, {2, 2, 0}, {0.4641, 0.2, 1.2083}},
+                  {Step::Spherical, {2, 0, 0}, {0.3179, 0.5522, 1.2247}},
+                  {Step::Spherical, {2, 1, 0}, {0.3893, 0.6763, 1.2247}},
+                  {Step::Toroidal, {2, 0, 1}, {0.3179, 0.6218, 0.2888}},
+                  {Step::Toroidal, {2, 1, 1}, {0.0918, 0.1795, 0.2888}},
+                  {Step::Planar, {1, 0, 0}, {-0.5, 0, 0.2}},
+                  {Step::Planar, {0, 0, 2}, {2, 0.2, 0.5}}};
+    for (const auto& asked : kAsked) {
+        const TextureStep step{asked.kind, {dvec4(asked.numbers, 0), dvec4(0), dvec4(0)}};
+        const dvec3 found = warped(step, {-0.5, 0.2, 1.1});
+        EXPECT_LT(glm::length(found - asked.expected), 2e-4)
+            << int(asked.kind) << ": " << found.x << " " << found.y << " " << found.z;
+    }
 }
 
 TEST(Texture, MixesTheStopsOfItsMap) {

@@ -167,9 +167,17 @@ double angle_of_incidence(const TexturePoint& point) {
     return std::asin(cosine) / std::numbers::pi + 0.5;
 }
 
+/// A gradient begins anew this far below whole numbers, so that a plane through them keeps to one
+/// color though its corners are floats. POV-Ray, whose planes are exact, takes the whole numbers
+/// themselves.
+constexpr double kGradientOffset = 1e-6;
+
 double gradient(const Pattern& pattern, const dvec3& at) {
     const auto& p = pattern.parameters;
-    return glm::dot(at, dvec3(p[0], p[1], p[2]));
+    const double x = glm::dot(at, dvec3(p[0], p[1], p[2])), whole = std::round(x);
+    const double value = std::abs(x - whole) < kGradientOffset ? whole : x;
+    // Behind 1 itself the value is the fraction.
+    return value > 1 ? fraction(value) : value;
 }
 
 /// Two spirals that run against each other.

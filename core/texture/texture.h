@@ -31,6 +31,12 @@ struct TextureStep {
         Repeat,     // rows[0]: the period along x, y or z, others 0; rows[1]: the offset of each
                     // period; rows[2]: 1 or -1 a component, by which every second one is flipped
         BlackHole,  // rows[0]: center, radius; rows[1]: strength, falloff, 1 where it pushes
+        // Of the next four rows[0] has the axis that they go by (0, 1 or 2), the power of the
+        // distance by which lengths grow, and the major radius or the height of the plane.
+        Cylindrical,
+        Spherical,
+        Toroidal,
+        Planar,
     };
     Kind kind = Kind::Affine;
     std::array<dvec4, 3> rows{dvec4(1, 0, 0, 0), dvec4(0, 1, 0, 0), dvec4(0, 0, 1, 0)};

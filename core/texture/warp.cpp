@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace ovc {
 
@@ -43,6 +44,38 @@ dvec3 drawn_by_hole(const TextureStep& step, const dvec3& at) {
     return at + (step.rows[1].z != 0 ? -power : power) * way;
 }
 
+/// Returns the angle from +a over +b as a share of a turn, in [0, 1).
+double share_of_turn(double a, double b) {
+    const double share = std::atan2(b, a) / (2 * std::numbers::pi);
+    return share < 0 ? share + 1 : share;
+}
+
+/// Returns the point turned from the axis of z, along which these warps are defined, to another.
+dvec3 turned_from_z(const dvec3& at, int axis) {
+    return axis == 0 ? dvec3(at.z, at.y, -at.x) : axis == 1 ? dvec3(at.x, -at.z, at.y) : at;
+}
+
+/// Lays a plane around a cylinder, a sphere or a torus, all of which stand along y: x becomes a
+/// turn around it, y the height or a turn of its own, and z the distance.
+dvec3 wrapped(const TextureStep& step, const dvec3& at) {
+    const double power = step.rows[0].y, major = step.rows[0].z;
+    const double away = std::hypot(at.x, at.z), around = share_of_turn(at.x, at.z);
+    dvec3 flat(around, at.y, away);
+    if (step.kind == TextureStep::Kind::Spherical)
+        flat = {around, 0.5 + std::atan2(at.y, away) / std::numbers::pi, glm::length(at)};
+    else if (step.kind == TextureStep::Kind::Toroidal)
+        flat = {around, 0.5 + std::atan2(at.y, away - major) / (2 * std::numbers::pi),
+                std::hypot(away - major, at.y)};
+    else if (step.kind == TextureStep::Kind::Planar)
+        flat = {at.x, at.y, major};
+    if (power != 0) {
+        const double scale = std::pow(flat.z, power);
+        flat.x *= scale;
+        flat.y *= step.kind == TextureStep::Kind::Cylindrical ? 1 : scale;
+    }
+    return turned_from_z(flat, int(step.rows[0].x));
+}
+
 } // namespace
 
 dvec3 warped(const TextureStep& step, const dvec3& at) {
@@ -55,6 +88,11 @@ dvec3 warped(const TextureStep& step, const dvec3& at) {
         return repeated(step, at);
     case TextureStep::Kind::BlackHole:
         return drawn_by_hole(step, at);
+    case TextureStep::Kind::Cylindrical:
+    case TextureStep::Kind::Spherical:
+    case TextureStep::Kind::Toroidal:
+    case TextureStep::Kind::Planar:
+        return wrapped(step, at);
     default:
         return affine(step, at);
     }

@@ -6,6 +6,7 @@
 #include "host/camera/camera_rays.h"
 #include "host/ranks/shared_film.h"
 #include "host/render/progressive.h"
+#include "host/render/radiosity.h"
 #include "host/render/render_batched.h"
 #include "host/render/render_mixed.h"
 #include "host/shade/path_tracer.h"
@@ -69,9 +70,11 @@ static double cpu_seconds() {
     return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
-/// seed: of path tracing, instead of that of the options.
+/// seed: of path tracing, instead of that of the options. bounced: null, or outlives the
+/// integrator.
 static std::unique_ptr<Integrator> make_integrator(const Scene& scene, const Camera& camera,
-                                                   const RenderOptions& options, uint64_t seed) {
+                                                   const RenderOptions& options, uint64_t seed,
+                                                   const BouncedLight* bounced) {
     const vec3 up(glm::normalize(camera.up));
     if (options.integrator == IntegratorKind::Path)
         return std::make_unique<PathTracer>(scene, up,
@@ -79,7 +82,7 @@ static std::unique_ptr<Integrator> make_integrator(const Scene& scene, const Cam
                                                               .shadows = options.shadows,
                                                               .seed = seed,
                                                               .clamp = options.clamp});
-    return std::make_unique<Whitted>(scene, up, options.max_depth, options.shadows);
+    return std::make_unique<Whitted>(scene, up, options.max_depth, options.shadows, bounced);
 }
 
 namespace {
@@ -154,10 +157,24 @@ public:
           options_(options),
           pinhole_(camera, options.part.value_or(whole(film)), &scene),
           sight_(scene, options.cutouts),
-          sampling_{.filter = options.filter, .seed = options.seed},
-          integrator_(make_integrator(scene, camera, options, options.seed)) {}
+          sampling_{.filter = options.filter, .seed = options.seed} {}
 
     const Pinhole& pinhole() const { return pinhole_; }
+
+    /// Comes before all else.
+    Result<Done> prepare() {
+        // Path tracing finds this light by itself. Ranks whose pieces of the picture ask together
+        // cannot ask for it alone.
+        if (options_.integrator == IntegratorKind::Whitted && !options_.ranks) {
+            auto bounced = gather_bounced_light(scene_, pinhole_, sight_, backend_,
+                                                {options_.max_depth, options_.shadows});
+            if (!bounced)
+                return bounced.error();
+            bounced_ = std::move(*bounced);
+        }
+        integrator_ = make_integrator(scene_, camera_, options_, options_.seed, bounced_.get());
+        return Done{};
+    }
 
     /// Renders rays through pixels, or through the points if there are any. Ranks share out the
     /// pixels of a film; else all of them are this process's.
@@ -190,7 +207,8 @@ public:
         if (pass.for_estimate) {
             sampling.seed ^= kOtherRandomNumbers;
             if (!for_estimate_)
-                for_estimate_ = make_integrator(scene_, camera_, options_, sampling.seed);
+                for_estimate_ =
+                    make_integrator(scene_, camera_, options_, sampling.seed, bounced_.get());
         }
         return trace(pass.for_estimate ? *for_estimate_ : *integrator_,
                      CameraRays(pinhole_, pass.samples, pass.pixels, {}, sampling), observe, film);
@@ -230,7 +248,8 @@ private:
     const Pinhole pinhole_;
     const Sight sight_;
     const CameraSampling sampling_;
-    const std::unique_ptr<Integrator> integrator_;
+    std::shared_ptr<const BouncedLight> bounced_; // null: nothing asks for it
+    std::unique_ptr<Integrator> integrator_;
     std::unique_ptr<Integrator> for_estimate_; // with other random numbers
 };
 
@@ -263,6 +282,8 @@ Result<RenderReport> render_picture(const Scene& scene, const Camera& camera, Ba
     const Stopwatch watch;
     const double cpu_before = cpu_seconds();
     Tracing tracing(scene, camera, backend, options, film);
+    if (const Result<Done> prepared = tracing.prepare(); !prepared)
+        return prepared.error();
     Result<RenderReport> report = render_by(tracing, options, scene.gamma, observe, film);
     if (!report)
         return report;

@@ -234,7 +234,7 @@ vec3 direct_light(const Light& light, const SurfacePoint& surface) {
 }
 
 Ray shadow_ray(const Light& light, const dvec3& position) {
-    return {position, 0, towards_light(light, position), 1};
+    return {position, 0, towards_light(light, position) + light.shadow_offset, 1};
 }
 
 Branches branches(const SurfacePoint& surface, bool total) {

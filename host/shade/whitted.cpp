@@ -2,6 +2,7 @@
 // At a surface Whitted's integrator adds its own color, asks every light, and may follow two rays.
 #include "host/shade/whitted.h"
 
+#include "host/shade/lights/bounced_light.h"
 #include "host/shade/surface/fog.h"
 
 #include <fmt/format.h>
@@ -27,8 +28,20 @@ static constexpr float kMinShadow = 1 / 4096.0f;
 /// Returns the share of a shadow ray's light that passes the surface. With conserve_energy, light
 /// that POV-Ray's glass reflects is missing behind it, but does not darken its shadow.
 static vec3 light_through(const SurfacePoint& surface) {
-    return surface.material->finish ? surface.through
-                                    : branches(surface, /* total= */ false).through;
+    if (!surface.material->finish)
+        return branches(surface, /* total= */ false).through;
+    const float caustics = surface.material->caustics;
+    if (caustics == 0)
+        return surface.through;
+    const double cosine = std::abs(glm::dot(surface.view, surface.normal));
+    // Measured: povray's light below tilted panes has this exponent for any ior.
+    return surface.through * float(1 + std::pow(cosine, 45 * double(caustics)));
+}
+
+/// Returns the share of a shadow ray's light that is left after its way to the surface.
+static vec3 light_kept(const Ray& ray, const SurfacePoint& surface) {
+    const std::optional<Absorption>& absorption = surface.material->absorption;
+    return absorption && absorption->power == 0 ? vec3(1) : share_kept(ray, surface);
 }
 
 /// Returns whether the ray reaches the surface from inside of a solid that lets light through.
@@ -39,6 +52,16 @@ static bool is_inside(const Scene& scene, const Ray& ray, const Hit& hit) {
         return false;
     const Triangle t = scene.soup.triangle(hit.id);
     return glm::dot(glm::cross(t[1] - t[0], t[2] - t[0]), ray.dir) > 0;
+}
+
+/// Returns the share of light from everywhere that the surface's finishes scatter.
+static vec3 reflected_by_finish(const SurfacePoint& surface) {
+    vec3 sum(0);
+    for (const Coat& coat : surface.coats)
+        sum += coat.weight * reflected_by_finish(coat.surface);
+    if (surface.coats.empty() && surface.material->finish)
+        sum = surface.opacity * surface.material->finish->diffuse * surface.color;
+    return sum;
 }
 
 static bool lets_light_through(const SurfacePoint& surface) {
@@ -67,11 +90,13 @@ void tell_simplifications(const Scene& scene, std::span<const Light> lights,
                         source, scene.exposure));
 }
 
-Whitted::Whitted(const Scene& scene, const vec3& up, uint32_t max_depth, bool shadows)
+Whitted::Whitted(const Scene& scene, const vec3& up, uint32_t max_depth, bool shadows,
+                 const BouncedLight* bounced)
     : scene_(scene),
       up_(up),
       max_depth_(max_depth),
       shadows_(shadows),
+      bounced_(bounced),
       light_may_pass_(lets_light_through(scene)) {
     assert(max_depth <= UINT16_MAX); // Path::depth counts to it
 }
@@ -89,6 +114,10 @@ void Whitted::shade(std::span<const Ray> rays, std::span<const Path> paths,
         }
         const Met& met = all.emplace_back(meet(rays[i], path, hits[i], spawned));
         film.add(met.pixel, met.weight * ambient_light(scene_.background, up_, met.surface));
+        if (bounced_ && scene_.radiosity)
+            film.add(met.pixel, met.weight * scene_.radiosity->brightness *
+                                    reflected_by_finish(met.surface) *
+                                    bounced_->at(met.surface.position, met.surface.normal));
     }
     for (uint32_t light = 0; light < scene_.lights.size(); ++light)
         for (const Met& met : all)
@@ -143,16 +172,19 @@ void Whitted::light_up(const Light& light, uint32_t number, const Met& met, Film
     const vec3 arriving = met.weight * direct_light(light, met.surface);
     if (arriving == vec3(0))
         return;
-    if (shadows_ && !light.shadowless)
-        spawned.shadows.push(shadow_ray(light, met.surface.position), met.id,
-                             {met.pixel, number, 0, arriving});
-    else
+    if (!shadows_ || light.shadowless) {
         film.add(met.pixel, arriving);
+        return;
+    }
+    const Ray ray = shadow_ray(light, met.surface.position);
+    // The surface itself may hide a point of an area light whose middle lights it.
+    if (light.shadow_offset == dvec3(0) || glm::dot(ray.dir, met.surface.geometric_normal) > 0)
+        spawned.shadows.push(ray, met.id, {met.pixel, number, 0, arriving});
 }
 
 bool Whitted::pass(const Hit& hit, Ray& ray, Shadow& shadow) const {
     const SurfacePoint glass = surface_point(scene_, ray, hit);
-    shadow.arriving *= light_through(glass) * share_kept(ray, glass);
+    shadow.arriving *= light_through(glass) * light_kept(ray, glass);
     if (max_component(shadow.arriving) < kMinShadow)
         shadow.arriving = vec3(0);
     ++shadow.passed;

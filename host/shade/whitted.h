@@ -24,12 +24,15 @@ inline constexpr float kMinWeight = 1 / 255.0f;
 void tell_simplifications(const Scene& scene, std::span<const Light> lights,
                           std::string_view source, const LogSink& log);
 
+class BouncedLight;
+
 class Whitted final : public Integrator {
 public:
     /// max_depth: reflections and refractions in a row, below 2^16; the last surface shows its own
     /// color alone. up: of the background, unit length. The scene must outlive it, and its lights
-    /// must be placed.
-    Whitted(const Scene& scene, const vec3& up, uint32_t max_depth, bool shadows);
+    /// must be placed. bounced: the scene's diffuse light, which must outlive it; null: none.
+    Whitted(const Scene& scene, const vec3& up, uint32_t max_depth, bool shadows,
+            const BouncedLight* bounced = nullptr);
 
     void shade(std::span<const Ray> rays, std::span<const Path> paths, std::span<const Hit> hits,
                Film& film, Spawned& spawned) const override;
@@ -47,6 +50,7 @@ private:
     const vec3 up_;
     const uint32_t max_depth_;
     const bool shadows_;
+    const BouncedLight* const bounced_;
     const bool light_may_pass_;
 };
 

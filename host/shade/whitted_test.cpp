@@ -9,6 +9,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 namespace ovc {
 
@@ -164,6 +166,68 @@ TEST(Whitted, LightThroughGlassIsDimmedAndTintedAtEveryCrossing) {
     EXPECT_NEAR((through.g - dark.g) / (lit.g - dark.g), 0.0625, 1e-5);
     EXPECT_NEAR(through.b, dark.b, 1e-6);
     EXPECT_EQ(report.rays.shadow, 3u) << "one for each stretch of the way";
+}
+
+/// Light under povray's panes with caustics 1, tilted by 15 and by 0 degrees, is 1.2102 and 2 times
+/// that without.
+TEST(Whitted, CausticsBrightenLightThatCrossesHeadOn) {
+    Scene scene = room();
+    scene.materials[0] = {"grey", vec3(0.5f), 0};
+    scene.materials[0].finish = Finish{};
+    scene.materials.push_back({"pane", vec3(0), 0, 1});
+    scene.materials[2].finish = Finish{};
+    const double h = 4 * std::tan(15 * std::numbers::pi / 180);
+    for (const bool tilted : {false, true}) {
+        const double up = tilted ? h : 0;
+        scene.soup.chunks[1] =
+            quad({-4, 3 - up, 4}, {4, 3 - up, 4}, {4, 3 + up, -4}, {-4, 3 + up, -4});
+        scene.materials[2].caustics = 0;
+        scene.meshes[1].material = 2;
+        const float without = red(scene, {0, 0, 0});
+        scene.materials[2].caustics = 1;
+        EXPECT_NEAR(red(scene, {0, 0, 0}) / without, tilted ? 1.2102 : 2, 1e-3);
+    }
+}
+
+/// The blocker hides a half of the points of the light from the floor, whose light has the strength
+/// of the middle.
+TEST(Whitted, AreaLightsShineFromTheirMiddleAndCastSoftShadows) {
+    Scene scene = room();
+    scene.materials[0] = {"grey", vec3(0.5f), 0};
+    const float dark = red(scene, {0, 0, 0});
+    RenderOptions options;
+    options.shadows = false;
+    const float lit = red(scene, {0, 0, 0}, options);
+    Light half = scene.lights[0];
+    half.color *= 0.5f;
+    scene.lights = {half, half};
+    scene.lights[1].shadow_offset = {40, 0, 0}; // past the blocker
+    EXPECT_NEAR((red(scene, {0, 0, 0}) - dark) / (lit - dark), 0.5, 1e-5);
+    scene.lights[1].shadow_offset = {0, -9, 0}; // below the floor
+    EXPECT_NEAR(red(scene, {0, 0, 0}), dark, 1e-6);
+}
+
+/// Under an even sky of radiance L, a floor of color c and diffuse d sends out c d L. Of the light
+/// that a wall of the same kind beside it takes from the sky, it gets a part back.
+TEST(Whitted, RadiosityIsTheLightOfTheSkyAndOfOtherSurfaces) {
+    Scene scene;
+    scene.background.horizon = scene.background.zenith = vec3(0.5f);
+    scene.materials = {{"white", vec3(0.8f)}};
+    scene.materials[0].finish = Finish{.diffuse = 0.6f};
+    scene.may_add_light = false;
+    scene.add_mesh("floor", 0, quad({-99, 0, 99}, {99, 0, 99}, {99, 0, -99}, {-99, 0, -99}));
+    EXPECT_EQ(red(scene, {0, 0, 0}), 0) << "there is no lamp";
+    scene.radiosity = Radiosity{.bounces = 1};
+    EXPECT_NEAR(red(scene, {0, 0, 0}), 0.8 * 0.6 * 0.5, 1e-5);
+    scene.add_mesh("wall", 0, quad({-99, 0, -1}, {99, 0, -1}, {99, 99, -1}, {-99, 99, -1}));
+    const float once = red(scene, {0, 0, 0});
+    EXPECT_LT(once, 0.8 * 0.6 * 0.5);
+    scene.radiosity->bounces = 3;
+    const float thrice = red(scene, {0, 0, 0});
+    EXPECT_GT(thrice, 1.05 * once);
+    EXPECT_LT(thrice, 0.8 * 0.6 * 0.5);
+    scene.radiosity->brightness = 2;
+    EXPECT_GT(red(scene, {0, 0, 0}), 1.9 * thrice);
 }
 
 TEST(Whitted, GlassCountsReflectionsAndRefractions) {

@@ -56,22 +56,46 @@ bool is_curved(const Object& object) {
     return std::find(std::begin(kMeshes), std::end(kMeshes), object.kind) == std::end(kMeshes);
 }
 
+/// Returns the texture with its pigments, of all layers, on texture coordinates.
+Texture on_texture_coordinates(Texture texture) {
+    texture.pigment.uv_mapping = true;
+    if (texture.under)
+        texture.under = std::make_shared<const Texture>(on_texture_coordinates(*texture.under));
+    return texture;
+}
+
+/// Returns the square from -0.5 to 0.5 pressed into the circle that touches its sides.
+dvec2 into_circle(const dvec2& at) {
+    const double length = glm::length(at);
+    return length > 0 ? std::max(std::abs(at.x), std::abs(at.y)) / length * at : at;
+}
+
 void add_light(const LightSource& source, const dmat4& placed, Scene& scene) {
     Light light = source.light;
+    light.position = dvec3(placed * dvec4(source.light.position, 1));
+    const auto aim_from = [&](const dvec3& place) {
+        const dvec3 aim = dvec3(placed * dvec4(source.point_at, 1)) - place;
+        if (light.cone && glm::length(aim) > 0)
+            light.direction = glm::normalize(aim);
+    };
     const dvec3 way(placed * dvec4(light.direction, 0));
     if (glm::length(way) > 0)
         light.direction = glm::normalize(way);
+    aim_from(light.position);
     const auto [columns, rows] = source.counts;
     light.color /= float(columns * rows);
     const auto share = [](int i, int count) { return count > 1 ? i / (count - 1.0) - 0.5 : 0; };
+    const dvec3 middle = light.position;
     for (int i = 0; i < columns; ++i)
         for (int j = 0; j < rows; ++j) {
-            const dvec3 at = source.light.position + share(i, columns) * source.sides[0] +
-                             share(j, rows) * source.sides[1];
-            light.position = dvec3(placed * dvec4(at, 1));
-            const dvec3 aim = dvec3(placed * dvec4(source.point_at, 1)) - light.position;
-            if (light.cone && glm::length(aim) > 0)
-                light.direction = glm::normalize(aim);
+            dvec2 at(share(i, columns), share(j, rows));
+            at = source.circular ? into_circle(at) : at;
+            const dvec3 offset(placed * dvec4(at.x * source.sides[0] + at.y * source.sides[1], 0));
+            if (source.illuminates) {
+                light.position = middle + offset;
+                aim_from(light.position);
+            } else
+                light.shadow_offset = offset;
             scene.lights.push_back(light);
         }
 }
@@ -132,9 +156,19 @@ private:
         const bool has_uv = !in_solid && (object.kind == "mesh" || object.kind == "mesh2");
         const bool has_holes = pigment.holes && (!on_uv || has_uv);
         const Color& color = has_holes ? pigment.holes->color : pigment.color;
-        Cover cover{
-            materials_.number(texture, color, from.texture_placed, from.interior, from.inside)};
+        materials_.set_has_uv(has_uv && !has_holes);
+        const uint32_t material =
+            on_uv && !pigment.uv_mapping
+                ? materials_.number(on_texture_coordinates(texture), color, from.texture_placed,
+                                    from.interior, from.inside)
+                : materials_.number(texture, color, from.texture_placed, from.interior,
+                                    from.inside);
+        Cover cover{material};
         cover.curved = is_curved(object);
+        cover.uv = materials_.is_on_uv(material);
+        if (on_uv && pigment.pattern && !cover.uv && look_.tell)
+            look_.tell({"uv_mapping of a shape", object.place,
+                        "uv_mapping is left out except on meshes outside of solids"});
         if (has_holes)
             cover.holes = holes.number(
                 pigment, on_uv ? pigment.placed : from.texture_placed * pigment.placed, on_uv);
@@ -339,6 +373,9 @@ void add_corners(const Facets& facets, const Placed& p, const HoleTable& holes, 
     for_each_placed(facets, p, [&](const std::array<Corner, 3>& corners, const vec2* uv) {
         holes.add_uv(p.cover.holes, {corners[0].position, corners[1].position, corners[2].position},
                      uv, batch.uv);
+        if (p.cover.uv)
+            for (size_t i = 0; i < 3; ++i)
+                batch.uv.push_back(uv ? uv[i] : vec2(0));
         for (const Corner& corner : corners) {
             batch.corners.push_back(vec3(corner.position - origin));
             const double length = glm::length(corner.normal);

@@ -15,6 +15,7 @@ struct Cover {
     uint32_t material = 0;
     uint32_t holes = kNone;
     bool curved = false; // the triangles stand for a curved surface
+    bool uv = false;     // the mesh keeps its texture coordinates; it has no holes then
 };
 
 class HoleTable {

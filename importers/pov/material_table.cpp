@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <functional>
 
 namespace ovc::pov {
@@ -62,10 +63,24 @@ uint32_t MaterialTable::number(const Texture& texture, const Color& color, const
             return known->second;
     }
     const auto number = uint32_t(scene_.materials.size());
+    on_uv_.push_back(has_part_on_uv(material));
     material.name = fmt::format("material {}", number + 1);
     by_color_.emplace(color_key(material), number);
     scene_.materials.push_back(std::move(material));
     return number;
+}
+
+bool MaterialTable::has_part_on_uv(const ovc::Material& material) const {
+    assert(on_uv_.size() == scene_.materials.size());
+    if (material.texture && textures_.is_on_uv(material.texture->texture))
+        return true;
+    if (material.under != kNone && on_uv_[material.under])
+        return true;
+    if (!material.mix)
+        return false;
+    const std::vector<TextureStop>& stops = scene_.textures[material.mix->texture].stops;
+    return std::any_of(stops.begin(), stops.end(),
+                       [&](const TextureStop& stop) { return on_uv_[stop.texture]; });
 }
 
 /// Makes the material a mix of those of the stops of the texture's map.
@@ -89,7 +104,7 @@ Bump MaterialTable::bump(const Normal& normal, const dmat4& placed) {
     Bump made{normal.kind,     normal.amount,
               normal.accuracy, textures_.of_pigments(map, within),
               normal.profile,  {}};
-    if (!map.stops.front().normal)
+    if (map.stops.empty() || !map.stops.front().normal)
         return made;
     made.kind = Bump::Kind::Mix;
     for (const MapStop& stop : map.stops) {
@@ -127,7 +142,7 @@ ovc::Material MaterialTable::made(const Texture& texture, const Color& color, co
     const float refraction = texture.surface.refraction;
     if (varies) {
         material.transmission = lets_light_through(pigment) ? std::min(refraction, 1.0f) : 0;
-        material.texture = textures_.of_pigments(*pigment.pattern, placed * pigment.placed);
+        material.texture = textures_.of_pigment(pigment, placed);
     } else {
         const vec3 through = refraction * color.through();
         material.transmission = std::clamp(max_component(through), 0.0f, 1.0f);
@@ -137,8 +152,10 @@ ovc::Material MaterialTable::made(const Texture& texture, const Color& color, co
     const double ior = texture.surface.ior.value_or(interior ? interior->ior : 1);
     material.ior = is_usable_ior(ior) ? ior : 1;
     material.finish = finish;
-    if (interior && interior->absorption.power > 0 && interior->absorption.distance > 0)
+    if (interior && interior->absorption.power >= 0 && interior->absorption.distance > 0)
         material.absorption = interior->absorption;
+    if (interior)
+        material.caustics = interior->caustics;
     if (texture.normal.pattern.pattern)
         material.bump = bump(texture.normal, placed);
     if (texture.mix.pattern)

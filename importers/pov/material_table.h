@@ -22,6 +22,12 @@ public:
     uint32_t number(const Texture& texture, const Color& color, const dmat4& placed,
                     const Interior* interior, const Texture* inside = nullptr);
 
+    /// As TextureTable::set_has_uv.
+    void set_has_uv(bool has_uv) { textures_.set_has_uv(has_uv); }
+
+    /// Returns whether a part of the material lies on texture coordinates.
+    bool is_on_uv(uint32_t material) const { return on_uv_[material]; }
+
     /// Returns the bump of a normal that has a pattern.
     Bump bump(const Normal& normal, const dmat4& placed);
 
@@ -31,9 +37,12 @@ private:
     void mix(const Texture& texture, const dmat4& placed, const Interior* interior,
              ovc::Material& material);
 
+    bool has_part_on_uv(const ovc::Material& material) const;
+
     const Look& look_;
     Scene& scene_;
     TextureTable textures_;
+    std::vector<bool> on_uv_;                            // of each material
     std::unordered_multimap<size_t, uint32_t> by_color_; // numbers of materials
 };
 

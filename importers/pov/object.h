@@ -47,7 +47,9 @@ struct LightSource {
     std::array<dvec3, 2>
         sides{}; // of the grid's parallelogram, in the middle of which the light is
     std::array<int, 2> counts{1, 1};
-    dvec3 point_at{0, 0, 1}; // where each spotlight of the grid aims
+    dvec3 point_at{0, 0, 1};  // where each spotlight of the grid aims
+    bool circular = false;    // the grid is pressed into a circle
+    bool illuminates = false; // light comes from all points of the grid, not only shadows
 };
 
 struct Object {

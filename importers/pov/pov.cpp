@@ -41,6 +41,26 @@ void parse_defaults(Reader& reader) {
     }
 }
 
+/// Reads radiosity { } from its { on. Words that say how exactly povray is to compute it are
+/// skipped.
+Radiosity parse_radiosity(Reader& reader) {
+    Radiosity radiosity;
+    reader.expect('{', "radiosity");
+    while (!reader.take('}')) {
+        if (reader.take("recursion_limit"))
+            radiosity.bounces = uint32_t(parse_int(reader, 1, 20, "recursion_limit"));
+        else if (reader.take("brightness"))
+            radiosity.brightness = std::max(0.0f, float(parse_float(reader)));
+        else if (const Token token = reader.next();
+                 token.kind == TokenKind::Name && token.name->is_keyword)
+            skip_arguments(reader);
+        else if (!token.is(','))
+            reader.fail(token.place,
+                        fmt::format("found {}, expected a part of radiosity", found(token)));
+    }
+    return radiosity;
+}
+
 Texture factory_default() {
     Texture texture;
     texture.surface.finish.diffuse = 0.6f;
@@ -83,6 +103,8 @@ public:
         look_.tell = [&](const Note& note) { reader_.omit(note.kind, note.place, note.sentence); };
         look_.before_3_7 = !reader_.has_linear_colors();
         scene.background.tints = !look_.before_3_7;
+        if (scene.radiosity && !look_.before_3_7)
+            look_.ambient_light = vec3(0); // as povray since 3.7
         if (camera_->normal.pattern.pattern)
             scene.camera->bump = MaterialTable(look_, scene).bump(camera_->normal, dmat4(1));
         if (sky_)
@@ -103,14 +125,15 @@ private:
         else if (reader_.take("background"))
             parse_background(scene);
         else if (reader_.take("global_settings"))
-            parse_settings();
+            parse_settings(scene);
         else if (reader_.take("sky_sphere"))
             sky_ = parse_sky_sphere(reader_);
         else if (reader_.take("fog")) {
             if (const Fog fog = parse_fog(reader_); fog.distance > 0)
                 scene.background.fogs.push_back(fog); // as povray, which draws none of no distance
-        } else if (token.is("media") || token.is("rainbow") || token.is("photons") ||
-                   token.is("radiosity")) {
+        } else if (reader_.take("radiosity")) {       // as before 3.5
+            scene.radiosity = parse_radiosity(reader_);
+        } else if (token.is("media") || token.is("rainbow") || token.is("photons")) {
             reader_.next();
             reader_.omit(token.name->text, token.place, token.name->text + " is left out");
             skip_braces(reader_, token.name->text);
@@ -138,7 +161,7 @@ private:
         reader_.expect('}', "background");
     }
 
-    void parse_settings() {
+    void parse_settings(Scene& scene) {
         reader_.expect('{', "global_settings");
         while (!reader_.take('}')) {
             if (reader_.take("assumed_gamma")) {
@@ -155,7 +178,11 @@ private:
                 look_.ambient_light = parse_color(reader_).rgb;
             else if (const Token token = reader_.next();
                      token.kind == TokenKind::Name && token.name->is_keyword) {
-                if (token.is("radiosity") || token.is("photons") || token.is("hf_gray_16"))
+                if (token.is("radiosity")) {
+                    scene.radiosity = parse_radiosity(reader_);
+                    continue;
+                }
+                if (token.is("photons") || token.is("hf_gray_16"))
                     reader_.omit(token.name->text, token.place, token.name->text + " is left out");
                 skip_arguments(reader_);
             } else

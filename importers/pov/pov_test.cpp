@@ -92,6 +92,12 @@ TEST(PovExpression, PatternsAndPigmentsAreFunctions) {
     EXPECT_NEAR(value("K(1, 0, 0)", functions).x, 0.575600025, 1e-6);
     EXPECT_NEAR(value("N(0.3, 0.7, 0.1)", functions).x, 0.395001395, 1e-7);
     EXPECT_NEAR(value("M(0.3, 0.7, 0.1, 1)", functions).x, 0.253942565, 1e-7);
+    const std::string fractals =
+        "#declare R = function { internal(59) }; #declare H = function { internal(29) };";
+    EXPECT_NEAR(value("R(0.3, 0.7, 0.15, 0.8, 2, 4, 0.9, 1.5, 2)", fractals).x, 0.902440869, 1e-6);
+    EXPECT_NEAR(value("R(0.3, 0.7, 0.15, 0.8, 2, 1, 0.9, 1.5, 1)", fractals).x, 0.20826027, 1e-6);
+    EXPECT_NEAR(value("H(0.3, 0.7, 0.15, 0.8, 2, 3, 0.9, 0.6, 2)", fractals).x, 1.581838639, 1e-6);
+    EXPECT_NEAR(value("H(0.3, 0.7, 0.15, 0.8, 2, 3, 0.9, 2, 2)", fractals).x, 1.314912804, 1e-6);
     const dvec3 turbulence = value("vturbulence(2.1, 0.4, 5, <0.3, 0.7, 0.1>)");
     EXPECT_LT(glm::length(turbulence - dvec3(-0.206909763, -0.414561417, -0.09054023)), 1e-6);
 }
@@ -107,6 +113,15 @@ TEST(PovExpression, TraceMeetsSurfacesWherePovRayDoes) {
     EXPECT_VALUE(dvec3(1, 2, 0), "trace(P, <1, 9, 0>, -y)", "#declare P = plane { y, 2 no_image }");
     EXPECT_VALUE(dvec3(0, 1, 0), "N",
                  "#declare P = plane { y, 2 }; #declare V = trace(P, <1, 9, 0>, -y, N);");
+    const std::string c = "<-0.08, 0.1, -0.83, -0.03>";
+    const std::pair<std::string, double> kJuliaSets[] = {
+        {c + " quaternion max_iteration 3 slice <0, 0.3, 0.1, 1>, 0.2", -1.039884},
+        {c + " hypercomplex max_iteration 3", -1.247108}};
+    for (const auto& [set, depth] : kJuliaSets)
+        EXPECT_NEAR(
+            value("trace(J, <0.1, 0.2, -5>, z)", "#declare J = julia_fractal { " + set + " }").z,
+            depth, 0.002)
+            << set;
     const std::string balls = "#declare S = union { #for (I, 0, 40) sphere { I * x, 0.5 } #end }";
     EXPECT_LT(glm::length(value("trace(S, <30.2, 5, 0.1>, -y)", balls) -
                           dvec3(30.2, std::sqrt(0.25 - 0.04 - 0.01), 0.1)),
@@ -114,6 +129,18 @@ TEST(PovExpression, TraceMeetsSurfacesWherePovRayDoes) {
     EXPECT_LT(glm::length(value("N", balls + "#declare P = trace(S, <30.2, 5, 0.1>, -y, N);") -
                           2.0 * dvec3(0.2, std::sqrt(0.25 - 0.04 - 0.01), 0.1)),
               0.002);
+}
+
+TEST(PovExpression, InsideKnowsSolidsGroupsAndHalfSpaces) {
+    const std::string shapes = "#declare P = plane { y, 2 }; #declare B = box { -1, 1 scale 2 };"
+                               "#declare D = difference { object { B } sphere { 0, 1 } };"
+                               "#declare U = union { object { B } sphere { 1.5 * x, 1 } };";
+    const std::pair<const char*, int> kAsked[] = {
+        {"P, 1", 1},       {"P, 3", 0},           {"B, <1.9, -1.9, 0>", 1}, {"B, <2.1, 0, 0>", 0},
+        {"D, 0", 0},       {"D, <1.2, 0, 0>", 1}, {"U, 1.2 * x", 1},        {"U, 2.4 * x", 1},
+        {"U, 2.6 * x", 0}, {"U, -1.9", 1}};
+    for (const auto& [asked, expected] : kAsked)
+        EXPECT_EQ(value("inside(" + std::string(asked) + ")", shapes).x, expected) << asked;
 }
 
 /// povray 3.7.0.10 prints these values for #debug str(rand(seed(1)), 0, 9) and the next number.
@@ -134,6 +161,12 @@ TEST(PovExpression, SplinesAreThoseOfPovRay) {
     EXPECT_VALUE(dvec3(0.275, 2.575, 0), "S(1.5)", spline("natural_spline"));
     EXPECT_VALUE(dvec3(0.75, 2.625, 0), "S(1.5)", spline("quadratic_spline"));
     EXPECT_VALUE(dvec3(0.5, 2.5, 0), "S(1.5)", spline("linear_spline"));
+    for (const char* before : {"S(-1)", "S(0.4)", "S(1)"})
+        EXPECT_VALUE(dvec3(1, 2, 0), before, spline("cubic_spline"));
+    for (const char* behind : {"S(2)", "S(2.6)", "S(9)"})
+        EXPECT_VALUE(dvec3(0, 3, 0), behind, spline("cubic_spline"));
+    EXPECT_VALUE(dvec3(0.5, 1, 0), "S(0.9)",
+                 "#declare S = spline { cubic_spline 0, <0, 0, 0>, 1, <1, 2, 0> }");
 }
 
 TEST(PovDirectives, MacrosTakeValuesAndVariables) {
@@ -318,8 +351,8 @@ TEST(PovErrors, NameTheLineAndShowIt) {
     } cases[] = {
         {"sphere { 0 1 }\nbox { 0, Side }",
          "x.pov:2:10: found 'Side', which is not declared\n    box { 0, Side }\n             ^"},
-        {"\n  julia_fractal { <0, 0, 0, 0> }", "x.pov:2:3: julia_fractal is not supported\n      "
-                                               "julia_fractal { <0, 0, 0, 0> }\n      ^"},
+        {"\n  parametric { <0, 0, 0, 0> }", "x.pov:2:3: parametric is not supported\n      "
+                                            "parametric { <0, 0, 0, 0> }\n      ^"},
         {"#if (1)", "x.pov:1:1: found no #end to this\n    #if (1)\n    ^"},
         {"#include \"none.inc\"",
          "x.pov:1:1: there is no file 'none.inc', neither beside the scene nor among POV-Ray's "
@@ -350,16 +383,16 @@ TEST(PovErrors, TellWhichLineOfTheSceneLedThere) {
                                       "    Out(2)\n"
                                       "    ^");
     const TestFolder folder;
-    folder.write("odd.inc", "\njulia_fractal { 1 }");
+    folder.write("odd.inc", "\nparametric { 1 }");
     const auto included = load(folder.write("main.pov", "sphere { 0, 1 }\n#include \"odd.inc\""));
     ASSERT_FALSE(included);
     EXPECT_EQ(folder.plain(included.error().message),
-              "odd.inc:2:1: julia_fractal is not supported\n    julia_fractal { 1 }\n    ^\n"
+              "odd.inc:2:1: parametric is not supported\n    parametric { 1 }\n    ^\n"
               "    included at main.pov:2:1:\n    #include \"odd.inc\"\n    ^");
 }
 
 TEST(PovErrors, WhatIsDeclaredAndNotSeenMayBeUnsupported) {
-    EXPECT_TRUE(parse("#declare D = julia_fractal { <0, 0, 0, 0> } sphere { 0, 1 }"));
+    EXPECT_TRUE(parse("#declare D = parametric { <0, 0, 0, 0> } sphere { 0, 1 }"));
 }
 
 TEST(PovWarnings, ComeOncePerKind) {
@@ -408,13 +441,20 @@ TEST(PovScene, AreaLightsAreGrids) {
               "3, 2 jitter adaptive 1 translate 5*y }");
     ASSERT_TRUE(scene);
     ASSERT_EQ(scene->lights.size(), 6u);
-    EXPECT_EQ(scene->lights[0].position, dvec3(-2, 6, -1));
-    EXPECT_EQ(scene->lights[5].position, dvec3(2, 6, 1));
+    for (const Light& light : scene->lights)
+        EXPECT_EQ(light.position, dvec3(0, 6, 0)) << "all of them shine from the middle";
+    EXPECT_EQ(scene->lights[0].shadow_offset, dvec3(-2, 0, -1));
+    EXPECT_EQ(scene->lights[5].shadow_offset, dvec3(2, 0, 1));
     EXPECT_FLOAT_EQ(scene->lights[0].color.x, std::numbers::pi_v<float>);
     EXPECT_TRUE(scene->omissions.empty());
-    const Result<Scene> spots = parse("light_source { 5*y, 1 spotlight point_at 0 area_light 10*x, "
-                                      "z, 2, 1 translate x }");
+    const std::string spot = "light_source { 5*y, 1 spotlight point_at 0 area_light 10*x, z, 2, 1 ";
+    EXPECT_EQ(parse(spot + "translate x }")->lights.at(0).direction, dvec3(0, -1, 0));
+    const Result<Scene> spots = parse(spot + "area_illumination on translate x }");
+    EXPECT_EQ(spots->lights.at(0).position, dvec3(-4, 5, 0));
     EXPECT_LT(glm::length(spots->lights.at(0).direction - glm::normalize(dvec3(5, -5, 0))), 1e-12);
+    const Result<Scene> round = parse("light_source { 0, 1 area_light 2*x, 2*y, 3, 3 circular }");
+    EXPECT_NEAR(glm::length(round->lights.at(0).shadow_offset), 1, 1e-12) << "a corner";
+    EXPECT_EQ(round->lights.at(1).shadow_offset, dvec3(-1, 0, 0));
     const Result<Scene> large = parse("light_source { y, 1 area_light x, z, 17, 1 }");
     EXPECT_EQ(large->lights.size(), 6u);
     EXPECT_EQ(large->omissions.at(0).sentence, "an area light has at most 6 x 6 lights");

@@ -50,12 +50,45 @@ uint32_t TextureTable::add(ovc::Texture texture, bool is_mix) {
             return known->second;
     const auto number = uint32_t(scene_.textures.size());
     by_key_[is_mix].emplace(key, number);
+    on_uv_.resize(number + size_t(1));
+    on_uv_[number] =
+        texture.on_uv ||
+        (!is_mix &&
+         std::any_of(texture.stops.begin(), texture.stops.end(), [&](const TextureStop& stop) {
+             return stop.texture != kNoTexture && on_uv_[stop.texture];
+         }));
     scene_.textures.push_back(std::move(texture));
     return number;
 }
 
+/// Returns the brightness of a texture as a formula of x, y and z.
+static Formula brightness_of(uint32_t texture) {
+    using Kind = FormulaStep::Kind;
+    constexpr uint32_t kGray = 5;
+    return {{{Kind::Argument, 0},
+             {Kind::Argument, 1},
+             {Kind::Argument, 2},
+             {Kind::Color, texture, kGray}},
+            {4}};
+}
+
+void TextureTable::show(const ImageMap& map, ovc::Texture& texture) {
+    texture.kind = TextureKind::Image;
+    texture.image = map.image;
+    texture.image->picture = add_picture(scene_, map.path, map.asked_for_at);
+    if (map.contents)
+        scene_.pictures[texture.image->picture].contents = *map.contents;
+}
+
 Pattern TextureTable::pattern_of(const PatternMap& map) {
     Pattern pattern = map.pattern;
+    if (map.image_map && !map.stops.empty()) {
+        ovc::Texture picture;
+        show(*map.image_map, picture);
+        pattern.kind = Pattern::Kind::Function;
+        pattern.formula = brightness_of(add(std::move(picture), /* is_mix= */ false));
+        return pattern;
+    }
     if (!map.program)
         return pattern;
     pattern.formula = map.program->formula;
@@ -66,15 +99,12 @@ Pattern TextureTable::pattern_of(const PatternMap& map) {
 }
 
 uint32_t TextureTable::number(const PatternMap& map) {
-    if (const auto known = known_.find(&map); known != known_.end())
+    std::unordered_map<const PatternMap*, uint32_t>& known_ones = known_[has_uv_];
+    if (const auto known = known_ones.find(&map); known != known_ones.end())
         return known->second;
     ovc::Texture texture{pattern_of(map), {}};
-    if (map.image_map) {
-        texture.kind = TextureKind::Image;
-        texture.image = map.image_map->image;
-        texture.image->picture =
-            add_picture(scene_, map.image_map->path, map.image_map->asked_for_at);
-    }
+    if (map.image_map && map.stops.empty())
+        show(*map.image_map, texture);
     for (const MapStop& stop : map.stops) {
         const Pigment& pigment = stop.texture ? stop.texture->pigment : stop.pigment;
         TextureStop made{stop.at, pigment.color};
@@ -82,18 +112,26 @@ uint32_t TextureTable::number(const PatternMap& map) {
             made.texture = number(pigment);
         texture.stops.push_back(made);
     }
-    return known_[&map] = add(std::move(texture), /* is_mix= */ false);
+    return known_ones[&map] = add(std::move(texture), /* is_mix= */ false);
 }
 
 uint32_t TextureTable::number(const Pigment& pigment) {
     if (!pigment.pattern)
         return add({{}, {{0, pigment.color}}}, /* is_mix= */ false);
     const uint32_t own = number(*pigment.pattern);
-    if (pigment.placed == dmat4(1))
+    const bool on_uv = pigment.uv_mapping && has_uv_;
+    if (pigment.placed == dmat4(1) && !on_uv)
         return own;
     ovc::Texture moved = scene_.textures[own];
     put_in_front(pigment.placed, moved.pattern);
+    moved.on_uv = on_uv;
     return add(std::move(moved), /* is_mix= */ false);
+}
+
+PlacedTexture TextureTable::of_pigment(const Pigment& pigment, const dmat4& placed) {
+    if (pigment.uv_mapping && has_uv_)
+        return placed_texture(number(pigment), dmat4(1));
+    return of_pigments(*pigment.pattern, placed * pigment.placed);
 }
 
 PlacedTexture TextureTable::of_pigments(const PatternMap& map, const dmat4& placed) {
@@ -118,7 +156,7 @@ ProgramPtr color_program(const Pigment& pigment) {
 bool lets_light_through(const Pigment& pigment) {
     if (!pigment.pattern)
         return pigment.color.filter > 0 || pigment.color.transmit > 0;
-    if (const auto& map = pigment.pattern->image_map)
+    if (const auto& map = pigment.pattern->image_map; map && pigment.pattern->stops.empty())
         return map->image.is_transparent || map->image.filter_all > 0 ||
                map->image.transmit_all > 0;
     const std::vector<MapStop>& stops = pigment.pattern->stops;

@@ -7,6 +7,7 @@
 
 #include <span>
 #include <unordered_map>
+#include <vector>
 
 namespace ovc::pov {
 
@@ -19,6 +20,13 @@ public:
 
     /// Returns the pattern's colors as they lie in the world. placed: brings the pattern there.
     PlacedTexture of_pigments(const PatternMap& map, const dmat4& placed);
+    /// Does the same for a pigment that has a pattern, which may lie on texture coordinates.
+    PlacedTexture of_pigment(const Pigment& pigment, const dmat4& placed);
+    /// Says whether the surfaces of the pigments that follow have texture coordinates. Without,
+    /// which is the beginning, uv_mapping is left out.
+    void set_has_uv(bool has_uv) { has_uv_ = has_uv; }
+    /// Returns whether a part of a texture that was added lies on texture coordinates.
+    bool is_on_uv(uint32_t texture) const { return on_uv_[texture]; }
     /// Does the same for a mix of materials, one for each stop.
     PlacedTexture of_materials(const PatternMap& map, std::span<const uint32_t> materials,
                                const dmat4& placed);
@@ -28,12 +36,15 @@ public:
 
 private:
     uint32_t number(const PatternMap& map);
+    void show(const ImageMap& map, ovc::Texture& texture);
     Pattern pattern_of(const PatternMap& map);
     uint32_t add(ovc::Texture texture, bool is_mix);
 
     Scene& scene_;
-    std::unordered_map<const PatternMap*, uint32_t> known_;
-    std::unordered_multimap<size_t, uint32_t> by_key_[2]; // of colors, of materials
+    bool has_uv_ = false;
+    std::vector<bool> on_uv_;                                  // of each texture
+    std::unordered_map<const PatternMap*, uint32_t> known_[2]; // without, with texture coordinates
+    std::unordered_multimap<size_t, uint32_t> by_key_[2];      // of colors, of materials
 };
 
 /// Returns the textures of a pigment, which is the last of them, in its parent's space. There is no

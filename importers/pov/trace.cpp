@@ -7,6 +7,7 @@
 #include <cassert>
 #include <iterator>
 #include <numeric>
+#include <optional>
 
 namespace ovc::pov {
 
@@ -16,20 +17,32 @@ namespace {
 constexpr double kMinDistance = 1e-6;
 constexpr uint32_t kLeafTriangles = 4;
 
-void meet_triangle(const Corner* c, const dvec3& from, const dvec3& way, Meeting& nearest) {
+struct Crossing {
+    double t, u, v;
+    bool leaving; // the ray comes from the triangle's inner side
+};
+
+std::optional<Crossing> crossing(const Corner* c, const dvec3& from, const dvec3& way) {
     const dvec3 ab = c[1].position - c[0].position, ac = c[2].position - c[0].position;
     const dvec3 p = glm::cross(way, ac);
     const double determinant = glm::dot(ab, p);
     if (determinant == 0)
-        return;
+        return std::nullopt;
     const dvec3 s = from - c[0].position;
     const dvec3 q = glm::cross(s, ab);
-    const double u = glm::dot(s, p) / determinant, v = glm::dot(way, q) / determinant;
-    const double t = glm::dot(ac, q) / determinant;
-    if (!(u >= 0 && v >= 0 && u + v <= 1 && t > kMinDistance && t < nearest.distance))
+    const Crossing at{glm::dot(ac, q) / determinant, glm::dot(s, p) / determinant,
+                      glm::dot(way, q) / determinant, determinant < 0};
+    if (!(at.u >= 0 && at.v >= 0 && at.u + at.v <= 1))
+        return std::nullopt;
+    return at;
+}
+
+void meet_triangle(const Corner* c, const dvec3& from, const dvec3& way, Meeting& nearest) {
+    const std::optional<Crossing> at = crossing(c, from, way);
+    if (!at || !(at->t > kMinDistance && at->t < nearest.distance))
         return;
-    nearest.distance = t;
-    nearest.normal = (1 - u - v) * c[0].normal + u * c[1].normal + v * c[2].normal;
+    nearest.distance = at->t;
+    nearest.normal = (1 - at->u - at->v) * c[0].normal + at->u * c[1].normal + at->v * c[2].normal;
 }
 
 void meet_plane(const PlaneShape& plane, const dvec3& from, const dvec3& way, Meeting& nearest) {
@@ -99,8 +112,32 @@ Meeting TraceTarget::first_meeting(const dvec3& origin, const dvec3& direction) 
     Meeting nearest;
     for (const PlaneShape& plane : object_.planes)
         meet_plane(plane, origin, direction, nearest);
+    for_each_near(origin, direction, nearest.distance, [&](const Corner* corners) {
+        meet_triangle(corners, origin, direction, nearest);
+    });
+    return nearest;
+}
+
+bool TraceTarget::contains(const dvec3& point) const {
+    for (const PlaneShape& plane : object_.planes)
+        if (glm::dot(plane.normal, point) < plane.distance)
+            return true;
+    // No edge of a usual scene runs along this way.
+    const dvec3 way = glm::normalize(dvec3(0.2718281828, 0.5772156649, 0.7853981634));
+    int surrounding = 0; // surfaces that the ray leaves and has not entered
+    const double no_limit = std::numeric_limits<double>::infinity();
+    for_each_near(point, way, no_limit, [&](const Corner* corners) {
+        if (const std::optional<Crossing> at = crossing(corners, point, way); at && at->t > 0)
+            surrounding += at->leaving ? 1 : -1;
+    });
+    return surrounding > 0;
+}
+
+template <class Use>
+void TraceTarget::for_each_near(const dvec3& origin, const dvec3& direction, const double& limit,
+                                const Use& use) const {
     if (nodes_.empty())
-        return nearest;
+        return;
     const dvec3 inverse_way = 1.0 / direction;
     uint32_t waiting[64]; // halving 2^32 triangles goes 32 deep
     size_t count = 0;
@@ -108,7 +145,7 @@ Meeting TraceTarget::first_meeting(const dvec3& origin, const dvec3& direction) 
     while (count > 0) {
         const uint32_t at = waiting[--count];
         const Node& node = nodes_[at];
-        if (!meets(node.box, origin, inverse_way, nearest.distance))
+        if (!meets(node.box, origin, inverse_way, limit))
             continue;
         if (node.second) {
             assert(count + 2 <= std::size(waiting));
@@ -117,10 +154,8 @@ Meeting TraceTarget::first_meeting(const dvec3& origin, const dvec3& direction) 
             continue;
         }
         for (uint32_t i = node.first; i < node.last; ++i)
-            meet_triangle(&object_.facets.corners[3 * size_t(order_[i])], origin, direction,
-                          nearest);
+            use(&object_.facets.corners[3 * size_t(order_[i])]);
     }
-    return nearest;
 }
 
 } // namespace ovc::pov

@@ -34,6 +34,10 @@ public:
     /// be 1. The ray does not meet surfaces within 1e-6 of its origin.
     Meeting first_meeting(const dvec3& origin, const dvec3& direction) const;
 
+    /// Returns whether the point lies behind a plane or inside of closed surfaces, whose triangles
+    /// run counterclockwise seen from outside.
+    bool contains(const dvec3& point) const;
+
     size_t triangle_count() const { return object_.facets.corners.size() / 3; }
 
 private:
@@ -45,6 +49,11 @@ private:
         uint32_t second = 0; // 0 for a leaf
     };
 
+    /// Calls use(corners) for the triangles of all leaves that the ray meets before `limit`, which
+    /// `use` may lower.
+    template <class Use>
+    void for_each_near(const dvec3& origin, const dvec3& direction, const double& limit,
+                       const Use& use) const;
     Box box_of(uint32_t triangle) const;
     void build(uint32_t first, uint32_t last);
 

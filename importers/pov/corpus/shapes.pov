@@ -11,3 +11,4 @@ bicubic_patch { type 1 flatness 0.1 u_steps 2 v_steps 2 <0, 0, 0>, <1, 0, 0>, <2
 mesh2 { vertex_vectors { 4, 0, x, y, z } normal_vectors { 1, y } texture_list { 1, texture { pigment { rgb x } } } face_indices { 2, <0, 1, 2>, 0, <0, 2, 3> } normal_indices { 2, <0, 0, 0>, <0, 0, 0> } }
 mesh { triangle { 0, x, z } smooth_triangle { 0, y, x, y, z, y texture { pigment { rgb y } } } scale <2, -1, 1> }
 merge { cylinder { -y, y, 0.3 open } sphere { y, 0.4 inverse } matrix <1, 0, 0, 0.2, 1, 0, 0, 0, 1, 4, 5, 6> }
+julia_fractal { <-0.08, 0, -0.83, -0.03> quaternion cube max_iteration 3 precision 20 slice <0, 0, 0.1, 1>, 0.1 }

@@ -98,11 +98,14 @@ bool parse_other_part(Reader& reader, Words& words, LightSource& source) {
         skip_braces(reader, "projected_through");
     } else if (reader.take("photons"))
         skip_braces(reader, "photons");
-    else if (reader.take("circular") || reader.take("orient"))
-        reader.omit("area_light " + token.name->text, token.place,
-                    token.name->text + " of an area light is left out");
-    else if (reader.take("jitter") || reader.take("area_illumination") ||
-             reader.take("media_interaction") || reader.take("media_attenuation"))
+    else if (reader.take("circular"))
+        source.circular = true;
+    else if (reader.take("orient"))
+        reader.omit("area_light orient", token.place, "orient of an area light is left out");
+    else if (reader.take("area_illumination"))
+        source.illuminates = parse_flag(reader);
+    else if (reader.take("jitter") || reader.take("media_interaction") ||
+             reader.take("media_attenuation"))
         parse_flag(reader);
     else if (reader.take("adaptive"))
         parse_float(reader);

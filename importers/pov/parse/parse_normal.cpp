@@ -2,6 +2,7 @@
 // Reads normal { }.
 #include "importers/pov/parse/pattern.h"
 #include "importers/pov/parse/texture.h"
+#include "importers/pov/pictures/image_map.h"
 #include "importers/pov/values/transform.h"
 #include "importers/pov/words/block.h"
 
@@ -32,9 +33,25 @@ static const Note* left_out_of_normal(Reader& reader, const Token& word) {
                        fmt::format("{} of a normal is left out", word.name->text));
 }
 
+/// Reads the block of a bump_map, whose picture takes the place of the normal's pattern.
+static void take_bump_map(Reader& reader, const Token& word, Normal& normal) {
+    const ValueMap values = parse_value_map(reader, word);
+    normal.kind = Bump::Kind::Picture;
+    normal.profile.clear();
+    normal.amount = values.bump_size.value_or(normal.amount);
+    normal.pattern = {};
+    if (!values.image) {
+        normal.pattern.notes = {values.why_not};
+        return;
+    }
+    auto map = std::make_shared<PatternMap>();
+    map->image_map = values.image;
+    normal.pattern.pattern = std::move(map);
+}
+
 /// Takes a part that Overcast leaves out.
 static bool take_other_part(Reader& reader, const Token& token, Normal& normal) {
-    if (!token.is("bump_map") && !token.is("uv_mapping"))
+    if (!token.is("uv_mapping"))
         return false;
     reader.next();
     normal.pattern.notes.push_back(left_out_of_normal(reader, token));
@@ -81,7 +98,10 @@ Normal parse_normal_parts(Reader& reader, const Normal& base, char end) {
             normal.accuracy = std::max(1e-6, parse_float(reader));
         else if (reader.take("slope_map"))
             normal.profile = parse_slope_map(reader);
-        else if (take_other_part(reader, token, normal)) {
+        else if (reader.take("bump_map")) {
+            pattern.forget();
+            take_bump_map(reader, token, normal);
+        } else if (take_other_part(reader, token, normal)) {
         } else if (pattern.take()) {
             if (pattern.is_pattern(token)) {
                 normal.kind = bump_of(token);

@@ -38,7 +38,8 @@ const std::unordered_map<std::string_view, ParseShape> kShapes = {
     {"superellipsoid", parse_superellipsoid},
     {"bicubic_patch", parse_bicubic_patch},
     {"text", parse_text_shape},
-    {"height_field", parse_height_field}};
+    {"height_field", parse_height_field},
+    {"julia_fractal", parse_julia_fractal}};
 
 /// Shapes that have no inside.
 const std::unordered_set<std::string_view> kSheets = {"disc", "triangle", "smooth_triangle",
@@ -64,7 +65,6 @@ const std::unordered_map<std::string_view, ParseWhole> kWholes = {
     {"blob", parse_blob},
     {"cubic", parse_polynomial},
     {"isosurface", parse_isosurface},
-    {"julia_fractal", parse_refused},
     {"parametric", parse_refused},
     {"poly", parse_polynomial},
     {"polynomial", parse_refused},

@@ -6,6 +6,7 @@
 #include "importers/file/text.h"
 #include "importers/pov/parse/texture.h"
 #include "importers/pov/pictures/density.h"
+#include "importers/pov/pictures/image_map.h"
 #include "importers/pov/texture_table.h"
 #include "importers/pov/values/function.h"
 #include "importers/pov/words/block.h"
@@ -43,6 +44,7 @@ const std::unordered_map<std::string_view, KindAndWave> kPatterns = {
     {"function", {Kind::Function}},
     {"gradient", {Kind::Gradient}},
     {"granite", {Kind::Granite}},
+    {"image_pattern", {Kind::Function}},
     {"julia", {Kind::Fractal}},
     {"leopard", {Kind::Leopard}},
     {"magnet", {Kind::Fractal}},
@@ -80,8 +82,8 @@ bool is_one_of(const Token& token, const std::string_view (&words)[N]) {
 
 /// Returns whether the word is a pattern that Overcast draws by its average color.
 bool is_other_pattern(const Token& token) {
-    static constexpr std::string_view kWords[] = {"facets",   "image_pattern", "object",
-                                                  "pavement", "potential",     "tiling"};
+    static constexpr std::string_view kWords[] = {"facets", "object", "pavement", "potential",
+                                                  "tiling"};
     return is_one_of(token, kWords);
 }
 
@@ -107,6 +109,7 @@ void PatternParts::restart() {
     pattern_ = pigment_.pattern->pattern;
     stops_ = pigment_.pattern->stops;
     program_ = pigment_.pattern->program;
+    image_ = pigment_.pattern->image_map;
 }
 
 bool PatternParts::is_pattern(const Token& token) {
@@ -120,6 +123,7 @@ void PatternParts::forget() {
     stops_.clear();
     pattern_ = {};
     program_.reset();
+    image_.reset();
     pattern_.noise = reader_.noise_kind();
 }
 
@@ -130,6 +134,7 @@ void PatternParts::choose(Kind kind, Wave wave) {
     pattern_.wave = wave;
     pattern_.parameters = {};
     program_.reset();
+    image_.reset();
     pigment_.holes.reset();
     pigment_.notes.clear();
 }
@@ -207,6 +212,8 @@ void PatternParts::parse_arguments(const Token& token) {
         take_function(token, parse_function(reader_));
     else if (token.is("pigment_pattern"))
         take_pigment_pattern();
+    else if (token.is("image_pattern"))
+        take_image_pattern(token);
     else if (token.is("slope"))
         parse_slope();
     else if (token.is("density_file"))
@@ -232,6 +239,17 @@ void PatternParts::take_pigment_pattern() {
     program.texture(FormulaStep::Kind::Color, color_program(pigment), 5);
     program_ = program.take();
     pigment_.notes = pigment.notes;
+}
+
+/// The value is the brightness of the picture's codes.
+void PatternParts::take_image_pattern(const Token& token) {
+    const ValueMap values = parse_value_map(reader_, token);
+    if (values.image) {
+        image_ = values.image;
+        return;
+    }
+    refuse(token);
+    pigment_.notes = {values.why_not};
 }
 
 /// Reads `{ DIRECTION, LOW, HIGH }` or `{ point_at POINT, LOW, HIGH }`, or the direction alone.
@@ -363,14 +381,16 @@ bool PatternParts::take_own_part() {
     return true;
 }
 
-/// Reads the two textures, pigments or colors behind `object { … }` as average colors.
+/// Reads `{ OBJECT ENTRY, ENTRY }`, whose entries are textures, pigments, colors or normals.
 void PatternParts::parse_object_list() {
-    skip_braces(reader_, "object");
+    reader_.expect('{', "object");
+    if (!take_named_if<ObjectPtr>(reader_)) {
+        reader_.next(); // such as `sphere`
+        skip_braces(reader_, "the object of a pattern");
+    }
     reader_.take_comma();
-    if (of_ != MapOf::Normals)
-        parse_list();
-    else
-        skip_arguments(reader_);
+    parse_list();
+    reader_.expect('}', "the entries of a pattern of an object");
 }
 
 bool PatternParts::take_list(const Token& token) {
@@ -482,12 +502,53 @@ void PatternParts::take_warp() {
         add_step(step);
     } else if (reader_.take("black_hole")) {
         take_black_hole(token);
+    } else if (token.is("cylindrical") || token.is("spherical") || token.is("toroidal") ||
+               token.is("planar")) {
+        reader_.next();
+        take_wrap(token);
     } else {
         skip_block(reader_);
         if (token.kind == TokenKind::Name)
             pigment_.notes.push_back(reader_.note(
                 "warp", token.place, fmt::format("the warp {} is left out", token.name->text)));
     }
+}
+
+/// Reads `[orientation AXIS] [dist_exp E] [major_radius R]`, or `[AXIS, HEIGHT]` of planar, from
+/// behind the word.
+void PatternParts::take_wrap(const Token& word) {
+    using StepKind = TextureStep::Kind;
+    TextureStep step;
+    step.kind = word.is("cylindrical") ? StepKind::Cylindrical
+                : word.is("spherical") ? StepKind::Spherical
+                : word.is("toroidal")  ? StepKind::Toroidal
+                                       : StepKind::Planar;
+    dvec3 axis(0, 0, 1);
+    step.rows = {dvec4(0), dvec4(0), dvec4(0)};
+    step.rows[0].z = word.is("toroidal") ? 1 : 0;
+    while (!reader_.take('}')) {
+        if (reader_.take("orientation"))
+            axis = parse_vector(reader_);
+        else if (reader_.take("dist_exp"))
+            step.rows[0].y = parse_float(reader_);
+        else if (reader_.take("major_radius"))
+            step.rows[0].z = parse_float(reader_);
+        else if (word.is("planar") && starts_number(reader_, reader_.peek())) {
+            axis = parse_vector(reader_);
+            reader_.take_comma();
+            step.rows[0].z = parse_float(reader_);
+        } else
+            reader_.fail_here(fmt::format("'}}' or a part of a {} warp", word.name->text));
+    }
+    const int major = major_axis(axis);
+    step.rows[0].x = major;
+    if (axis[major] > 0 && std::abs(axis[(major + 1) % 3]) + std::abs(axis[(major + 2) % 3]) == 0)
+        add_step(step);
+    else
+        pigment_.notes.push_back(
+            reader_.note("warp", word.place,
+                         fmt::format("the warp {} is left out where its axis is not x, y or z",
+                                     word.name->text)));
 }
 
 /// Reads `<center>, radius …` of a warp from behind its word.
@@ -534,6 +595,7 @@ void PatternParts::finish() {
     auto made = std::make_shared<PatternMap>();
     made->pattern = pattern_;
     made->program = program_;
+    made->image_map = image_;
     made->stops = stops_.empty() ? default_stops(nullptr, pattern_.kind) : stops_;
     if (pattern_.kind != Kind::Average && !is_discrete(pattern_.kind))
         std::stable_sort(made->stops.begin(), made->stops.end(),

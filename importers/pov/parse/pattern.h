@@ -37,6 +37,8 @@ private:
     void parse_arguments(const Token& token);
     void take_function(const Token& token, const Function& function);
     void take_pigment_pattern();
+    void take_image_pattern(const Token& token);
+    void take_wrap(const Token& word);
     void parse_slope();
     void add_altitude(const dvec3& altitude, double low, double high);
     void parse_fractal(const Token& token);
@@ -56,7 +58,8 @@ private:
     bool changed_ = false;
     std::optional<double> agate_turb_;
     Pattern pattern_;
-    ProgramPtr program_; // of Pattern::Kind::Function
+    ProgramPtr program_;            // of Pattern::Kind::Function
+    std::optional<ImageMap> image_; // of image_pattern
     std::vector<MapStop> stops_;
 };
 

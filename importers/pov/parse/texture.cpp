@@ -161,9 +161,6 @@ Pigment parse_pigment_parts(Reader& reader, Pigment pigment, char end) {
             reader.fail_here("a part of a pigment");
     }
     pattern.finish();
-    if (pigment.uv_mapping && pigment.pattern)
-        pigment.notes.push_back(
-            reader.note("uv_mapping", reader.place(), "uv_mapping of a pattern is left out"));
     return pigment;
 }
 
@@ -206,6 +203,8 @@ Interior parse_interior(Reader& reader, const Interior& base) {
             interior.absorption.distance = float(parse_float(reader));
         else if (reader.take("fade_power"))
             interior.absorption.power = float(parse_float(reader));
+        else if (reader.take("caustics"))
+            interior.caustics = std::max(0.0f, float(parse_float(reader)));
         else if (reader.take("fade_color") || reader.take("fade_colour"))
             interior.absorption.color = parse_color(reader).rgb;
         else {
@@ -245,6 +244,14 @@ Material parse_material(Reader& reader) {
     return material;
 }
 
+/// Returns the texture that the map mixes.
+static Texture mix_of(PatternPtr map) {
+    Texture all = *map->stops.front().texture;
+    all.mix = {};
+    all.mix.pattern = std::move(map);
+    return all;
+}
+
 /// Reads `tiles { texture { … } tile2 texture { … } }`, a checker of two textures in old scenes.
 static Texture parse_tiles(Reader& reader) {
     reader.expect('{', "tiles");
@@ -264,12 +271,41 @@ static Texture parse_tiles(Reader& reader) {
         else if (!reader.take("tile2") && !reader.take(','))
             reader.fail_here("'}' or a texture of tiles");
     }
-    if (map->stops.empty())
-        return reader.defaults;
-    Texture both = *map->stops.front().texture;
-    both.mix = {};
-    both.mix.pattern = std::move(map);
-    return both;
+    return map->stops.empty() ? reader.defaults : mix_of(std::move(map));
+}
+
+/// Reads `material_map { PICTURE texture { … } … }`, whose picture chooses one of the textures.
+static Texture parse_material_map(Reader& reader, const Token& word) {
+    const MaterialValues values_for = parse_material_picture(reader, word);
+    std::vector<TexturePtr> textures;
+    while (!reader.take('}')) {
+        if (reader.take("texture"))
+            textures.push_back(std::make_shared<const Texture>(parse_texture(reader)));
+        else if (const auto texture = take_named_if<Texture>(reader))
+            textures.push_back(std::make_shared<const Texture>(*texture));
+        else if (!reader.take(','))
+            reader.fail_here("'}' or a texture of a material_map");
+    }
+    if (textures.empty() || textures.size() > 256)
+        reader.fail(
+            word.place,
+            fmt::format("found a material_map of {} textures, expected 1 to 256", textures.size()));
+    const ValueMap values = values_for(reader, textures.size());
+    if (!values.image) {
+        Texture first = *textures.front();
+        first.notes.push_back(values.why_not);
+        return first;
+    }
+    auto map = std::make_shared<PatternMap>();
+    map->image_map = values.image;
+    for (size_t i = 0; i < textures.size(); ++i)
+        for (const double side : {-0.5, 0.5}) { // of the range of the picture's value for texture i
+            MapStop stop;
+            stop.at = (double(i) + side) / 255;
+            stop.texture = textures[i];
+            map->stops.push_back(std::move(stop));
+        }
+    return mix_of(std::move(map));
 }
 
 /// A mix of textures that has been read becomes a part of the texture.
@@ -317,6 +353,8 @@ Texture parse_texture_parts(Reader& reader, Texture texture, char end) {
             texture.pigment.uv_mapping = parse_flag(reader);
         else if (reader.take("tiles"))
             texture = parse_tiles(reader);
+        else if (reader.take("material_map"))
+            texture = parse_material_map(reader, token);
         else if (reader.take("normal"))
             texture.normal = parse_normal(reader, texture.normal);
         else if (mix.take()) {

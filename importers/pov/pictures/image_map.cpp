@@ -2,6 +2,8 @@
 #include "importers/pov/pictures/image_map.h"
 
 #include "importers/file/text.h"
+#include "importers/png.h"
+#include "importers/pov/parse/texture.h"
 #include "importers/pov/pictures/holes.h"
 #include "importers/pov/pictures/picture.h"
 #include "importers/pov/words/block.h"
@@ -61,6 +63,7 @@ struct MapWords {
     MapTransparency transparency;
     bool smooth = false;
     int type = 0; // 0: the picture lies on x and y
+    std::optional<double> bump_size;
 
     /// Returns the projection of the type; nothing for one that POV-Ray does not have.
     std::optional<ImageTexture::Projection> projection() const {
@@ -79,9 +82,14 @@ struct MapWords {
     }
 };
 
-MapWords parse_map_words(Reader& reader, const Place& start) {
+/// Reads the words up to the end of the block, or up to the textures of a material_map.
+MapWords parse_map_words(Reader& reader, const Place& start, bool of_materials = false) {
     MapWords words;
-    while (!reader.take('}')) {
+    const auto is_texture = [&] {
+        const Token token = reader.peek();
+        return of_materials && (token.is("texture") || named<Texture>(reader, token));
+    };
+    while (!is_texture() && (of_materials ? !reader.peek().is('}') : !reader.take('}'))) {
         if (reader.take("filter"))
             parse_through(reader, words.transparency, &MapTransparency::Share::filter);
         else if (reader.take("transmit"))
@@ -92,8 +100,10 @@ MapWords parse_map_words(Reader& reader, const Place& start) {
             words.smooth = parse_float(reader) > 0;
         else if (reader.take("map_type"))
             words.type = int(parse_float(reader));
+        else if (reader.take("bump_size"))
+            words.bump_size = parse_float(reader);
         else if (reader.next().kind == TokenKind::End)
-            reader.fail(start, "found no '}' to image_map");
+            reader.fail(start, "found no '}' to the block of a picture");
     }
     return words;
 }
@@ -113,13 +123,115 @@ PatternPtr shown_by_textures(const Reader& reader, const Place& start, const std
     image.transmit_all = words.transparency.all.transmit;
     image.otherwise = pigment.holes ? pigment.holes->color : pigment.color;
     PatternMap map;
-    map.image_map =
-        ImageMap{std::filesystem::absolute(path).lexically_normal().string(),
-                 fmt::format("{}:{}:{}", start.file->name, start.line, start.column), image};
+    map.image_map = ImageMap{std::filesystem::absolute(path).lexically_normal().string(),
+                             fmt::format("{}:{}:{}", start.file->name, start.line, start.column),
+                             image,
+                             {}};
     return std::make_shared<const PatternMap>(std::move(map));
 }
 
+/// The picture that a block names behind its {.
+struct NamedPicture {
+    Place start;
+    std::string name;
+    std::filesystem::path path;
+    Result<Picture> picture = Error{"a picture that is computed is not read"};
+};
+
+NamedPicture take_picture(Reader& reader, const std::string& block) {
+    reader.expect('{', block);
+    NamedPicture named{reader.peek().place};
+    if (reader.peek().kind == TokenKind::Name && !starts_text(reader, reader.peek()) &&
+        reader.peek().name->is_keyword)
+        reader.next();                         // png and the like, which the file itself tells
+    if (!starts_text(reader, reader.peek())) { // a function or pigment
+        skip_arguments(reader);
+        return named;
+    }
+    named.name = parse_text(reader);
+    named.path = reader.find_file(named.name, ".png");
+    named.picture = named.path.empty()
+                        ? Error{fmt::format("there is no file {}", ovc::quoted(named.name))}
+                        : read_picture(named.path);
+    if (named.picture)
+        reader.spend(named.picture->size() / 16);
+    return named;
+}
+
+/// Returns a texture of the picture's codes.
+ImageMap image_of_codes(const NamedPicture& named, const MapWords& words) {
+    ImageTexture image;
+    image.projection = *words.projection();
+    image.gamma = 1;
+    image.filter = words.smooth ? TexelFilter::Smooth : TexelFilter::Nearest;
+    image.beyond_s = image.beyond_t = words.transparency.once ? Beyond::Nothing : Beyond::Repeat;
+    const Place& start = named.start;
+    return {std::filesystem::absolute(named.path).lexically_normal().string(),
+            fmt::format("{}:{}:{}", start.file->name, start.line, start.column),
+            image,
+            {}};
+}
+
+/// Returns the note that a block is not drawn, and why.
+const Note* not_drawn(Reader& reader, const Token& word, const Place& at, const std::string& why) {
+    return reader.note(word.name->text, at,
+                       fmt::format("{}: the {} is left out", why, word.name->text));
+}
+
+/// Returns the picture of a material_map of `count` textures as MaterialValues does.
+ValueMap values_of_materials(Reader& reader, const Token& word, const NamedPicture& named,
+                             const MapWords& words, size_t count) {
+    assert(count > 0);
+    if (!named.picture || !words.projection())
+        return {.why_not = not_drawn(reader, word, named.start,
+                                     named.picture ? "its map_type is not known"
+                                                   : named.picture.error().message)};
+    const Picture& picture = *named.picture;
+    std::vector<uint16_t> samples;
+    samples.reserve(3 * picture.size());
+    for (size_t i = 0; i < picture.size(); ++i) {
+        const size_t index =
+            picture.indices.empty() ? picture.pixels[i][0] >> 8 : picture.indices[i];
+        samples.insert(samples.end(), 3, uint16_t(257 * (index % count)));
+    }
+    const Result<std::string> png =
+        write_png({picture.width, picture.height, 8, samples}, "Overcast");
+    if (!png)
+        return {.why_not = not_drawn(reader, word, named.start, png.error().message)};
+    ValueMap map{image_of_codes(named, words)};
+    map.image->image.filter = TexelFilter::Nearest;
+    map.image->contents = std::make_shared<const std::vector<uint8_t>>(png->begin(), png->end());
+    map.image->path += fmt::format(", choosing from {}", count);
+    return map;
+}
+
 } // namespace
+
+ValueMap parse_value_map(Reader& reader, const Token& word) {
+    const NamedPicture named = take_picture(reader, word.name->text);
+    const MapWords words = parse_map_words(reader, named.start);
+    ValueMap map{.bump_size = words.bump_size};
+    const bool flat_only = word.is("bump_map");
+    if (!named.picture)
+        map.why_not = not_drawn(reader, word, named.start, named.picture.error().message);
+    else if (!words.projection() || (flat_only && words.type != 0))
+        map.why_not = not_drawn(reader, word, named.start,
+                                fmt::format("map_type {} is not known", words.type));
+    else {
+        map.image = image_of_codes(named, words);
+        if (flat_only)
+            map.image->image.filter = TexelFilter::Nearest; // as povray, which ignores the word
+    }
+    return map;
+}
+
+MaterialValues parse_material_picture(Reader& reader, const Token& word) {
+    const auto named = std::make_shared<const NamedPicture>(take_picture(reader, word.name->text));
+    const MapWords words = parse_map_words(reader, named->start, /* of_materials= */ true);
+    return [named, words, word](Reader& again, size_t count) {
+        return values_of_materials(again, word, *named, words, count);
+    };
+}
 
 void parse_image_map(Reader& reader, const Token& word, Pigment& pigment) {
     const auto note = [&](const std::string& kind, const Place& at, const std::string& sentence) {
@@ -129,28 +241,16 @@ void parse_image_map(Reader& reader, const Token& word, Pigment& pigment) {
     pigment.pattern.reset();
     pigment.holes.reset();
     pigment.placed = dmat4(1);
-    reader.expect('{', "image_map");
-    const Place start = reader.peek().place;
-    if (reader.peek().kind == TokenKind::Name && !starts_text(reader, reader.peek()) &&
-        reader.peek().name->is_keyword)
-        reader.next(); // png and the like, which the file itself tells
-    if (!starts_text(reader, reader.peek())) {
-        skip_block(reader); // a function or pigment
-        note("image_map", start, "an image_map that is computed is drawn by a middle grey");
-        return;
-    }
-    const std::string name = parse_text(reader);
-    const std::filesystem::path path = reader.find_file(name, ".png");
-    const Result<Picture> picture =
-        path.empty() ? Error{fmt::format("there is no file {}", ovc::quoted(name))}
-                     : read_picture(path);
+    const NamedPicture named = take_picture(reader, "image_map");
+    const Place& start = named.start;
     const MapWords words = parse_map_words(reader, start);
-    if (!picture) {
-        note("image_map " + name, start,
-             fmt::format("{}: the image_map is drawn by a middle grey", picture.error().message));
+    if (!named.picture) {
+        note("image_map " + named.name, start,
+             fmt::format("{}: the image_map is drawn by a middle grey",
+                         named.picture.error().message));
         return;
     }
-    reader.spend(picture->size() / 16);
+    const Result<Picture>& picture = named.picture;
     const std::array<double, 256> light = light_of_codes(reader);
     pigment.color = average(*picture, light);
     pigment.color.filter += words.transparency.all.filter;
@@ -160,11 +260,12 @@ void parse_image_map(Reader& reader, const Token& word, Pigment& pigment) {
     if (words.type == 0)
         pigment.holes = holes;
     // A color of the picture's table that lets light through has no place in a texture.
+    // Holes on texture coordinates are cut, and then the rest has one color.
     const bool is_shown =
-        words.projection() && !pigment.uv_mapping && words.transparency.of_index.empty();
+        words.projection() && words.transparency.of_index.empty() && !(pigment.uv_mapping && holes);
     const bool is_one_color = holes && holes->one_color && words.type == 0;
     if (is_shown && !is_one_color)
-        pigment.pattern = shown_by_textures(reader, start, path.string(), words, pigment);
+        pigment.pattern = shown_by_textures(reader, start, named.path.string(), words, pigment);
     else if (!is_one_color)
         note("image_map", word.place, "image_map is drawn by its average color");
     if (words.type == 0)

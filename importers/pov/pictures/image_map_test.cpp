@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/texture/pattern.h"
+#include "importers/png.h"
 #include "importers/test_files.h"
 
 #include <cmath>
@@ -105,6 +106,98 @@ TEST(PovImageMap, AnotherPigmentTakesItsPlace) {
     EXPECT_FALSE(read.material().texture);
     EXPECT_EQ(read.material().color, vec3(0, 1, 0));
     EXPECT_TRUE(read.scene.pictures.empty());
+}
+
+/// Reads a scene beside a.png, which is red and blue, side by side.
+ReadPov read_beside_picture(const std::string& text) {
+    const TestFolder folder;
+    folder.write("a.png", png_of(2, 1, {255, 0, 0, 255, 1, 0, 255, 255}));
+    ReadPov read;
+    Result<Scene> scene =
+        load(folder.write("a.pov", "#version 3.7; global_settings { assumed_gamma 1 }\n" + text),
+             gather(read.warnings));
+    EXPECT_TRUE(scene) << (scene ? "" : scene.error().message);
+    if (scene)
+        read.scene = std::move(*scene);
+    return read;
+}
+
+TEST(PovMaterialMap, RedsChooseTexturesModuloTheirNumber) {
+    const ReadPov read = read_beside_picture(
+        "sphere { 0, 1 texture { material_map { png \"a.png\" once texture { pigment { rgb 0 } } "
+        "texture { pigment { rgb 1 } } texture { pigment { rgb x } } } } }");
+    EXPECT_TRUE(read.warnings.empty());
+    ASSERT_EQ(read.scene.pictures.size(), 1u);
+    const std::vector<uint8_t>& bytes = read.scene.pictures[0].contents;
+    const Result<Picture> picture = read_png(bytes);
+    ASSERT_TRUE(picture);
+    EXPECT_EQ(picture->pixels[0][0] >> 8, 255 % 3);
+    EXPECT_EQ(picture->pixels[1][0] >> 8, 1 % 3);
+    ASSERT_TRUE(read.material().mix);
+    const Texture& mix = read.scene.textures[read.material().mix->texture];
+    EXPECT_EQ(mix.pattern.kind, Pattern::Kind::Function);
+    // Between the two stops of each texture a value chooses it alone.
+    ASSERT_EQ(mix.stops.size(), 6u);
+    for (size_t i = 0; i < 3; ++i) {
+        EXPECT_EQ(mix.stops[2 * i].texture, mix.stops[2 * i + 1].texture);
+        EXPECT_LT(mix.stops[2 * i].at, double(i) / 255);
+        EXPECT_GT(mix.stops[2 * i + 1].at, double(i) / 255);
+    }
+}
+
+TEST(PovMaterialMap, WithoutItsPictureTheFirstTextureStands) {
+    const ReadPov read = read_beside_picture(
+        "sphere { 0, 1 texture { material_map { png \"b.png\" texture { pigment { rgb x } } "
+        "texture { pigment { rgb 1 } } } } }");
+    EXPECT_EQ(read.material().color, vec3(1, 0, 0));
+    ASSERT_EQ(read.warnings.size(), 1u);
+    EXPECT_NE(read.warnings[0].find("there is no file 'b.png': the material_map is left out"),
+              std::string::npos)
+        << read.warnings[0];
+}
+
+TEST(PovImagePattern, IsTheBrightnessOfCodes) {
+    ReadPov read = read_beside_picture(
+        "sphere { 0, 1 pigment { image_pattern { png \"a.png\" } color_map { [0 rgb 0] "
+        "[1 rgb <2, 1, 0>] } } }");
+    EXPECT_TRUE(read.warnings.empty());
+    const Columns lookup;
+    for (Texture& texture : read.scene.textures)
+        if (texture.image)
+            texture.image->lookup = &lookup;
+    const PlacedTexture& placed = read.material().texture.value();
+    const vec3 color =
+        color_at(read.scene.textures, placed.texture, placed.at(dvec3(0.3, 0.7, 0))).rgb;
+    const double gray = (0.297 * 76 + 0.589 * 179) / 255;
+    EXPECT_NEAR(color.x, 2 * gray, 1e-5);
+    EXPECT_NEAR(color.y, gray, 1e-5);
+}
+
+TEST(PovBumpMap, ItsSizeComesFromTheBlockOrFromBehindIt) {
+    const auto bump_of = [](const std::string& normal) {
+        return read_beside_picture("sphere { 0, 1 normal { " + normal + " } }").material().bump;
+    };
+    EXPECT_EQ(bump_of("bump_map { png \"a.png\" }")->amount, 0.5);
+    EXPECT_EQ(bump_of("bump_map { png \"a.png\" bump_size 2 }")->amount, 2);
+    EXPECT_EQ(bump_of("bump_map { png \"a.png\" bump_size 2 } bump_size 0.7")->amount, 0.7);
+    EXPECT_EQ(bump_of("bump_map { png \"a.png\" } 0.7")->kind, Bump::Kind::Picture);
+}
+
+TEST(PovUvMapping, MeshesKeepCoordinatesForPatternsOnThem) {
+    const std::string mesh = "mesh { triangle { 0, x, y uv_vectors <0, 0>, <1, 0>, <0, 1> } ";
+    const std::string map = "checker rgb 0 rgb 1 scale 0.1";
+    for (const std::string& more :
+         {"pigment { uv_mapping " + map + " } }", "uv_mapping pigment { " + map + " } }"}) {
+        const ReadPov read = read_beside_picture(mesh + more);
+        EXPECT_TRUE(read.warnings.empty());
+        EXPECT_EQ(read.scene.meshes.at(0).uv, (std::vector<vec2>{vec2(0), vec2(1, 0), vec2(0, 1)}));
+        EXPECT_TRUE(read.scene.textures[read.material().texture.value().texture].on_uv);
+    }
+    EXPECT_TRUE(read_beside_picture(mesh + "pigment { " + map + " } }").scene.meshes[0].uv.empty());
+    const ReadPov sphere =
+        read_beside_picture("sphere { 0, 1 pigment { uv_mapping " + map + " } }");
+    EXPECT_EQ(sphere.warnings.size(), 1u);
+    EXPECT_FALSE(sphere.scene.textures[sphere.material().texture.value().texture].on_uv);
 }
 
 } // namespace

@@ -33,6 +33,9 @@ Shape parse_height_field(Reader& reader);
 // shape_text.cpp
 Shape parse_text_shape(Reader& reader);
 
+// shape_julia.cpp
+Shape parse_julia_fractal(Reader& reader);
+
 // shape_patch.cpp
 Shape parse_bicubic_patch(Reader& reader);
 

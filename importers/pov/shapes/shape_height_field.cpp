@@ -64,7 +64,18 @@ Grid grid_of_function(Reader& reader, const Token& word) {
     return grid;
 }
 
-Grid grid_of_picture(Reader& reader) {
+/// Fractint's pictures of 16 bits have the upper bytes in their left half, the lower in the right.
+void add_potential(const Picture& picture, Grid& grid) {
+    grid.width = picture.width / 2;
+    for (size_t row = 0; row < grid.height; ++row)
+        for (size_t i = 0; i < grid.width; ++i) {
+            const uint8_t* upper = &picture.indices[row * picture.width + i];
+            grid.heights.push_back(float((256 * upper[0] + upper[grid.width]) / 65536.0));
+        }
+}
+
+/// potential: the picture is one of Fractint's.
+Grid grid_of_picture(Reader& reader, bool potential) {
     const Place at = reader.peek().place;
     const std::string name = parse_text(reader);
     const std::filesystem::path path = reader.find_file(name, ".png");
@@ -81,8 +92,11 @@ Grid grid_of_picture(Reader& reader) {
     grid.height = picture->height;
     reader.spend(picture->size() / 16);
     reader.grow(picture->size() * sizeof(float));
-    for (size_t i = 0; i < picture->size(); ++i)
-        grid.heights.push_back(float(height_of(*picture, i)));
+    if (potential && !picture->indices.empty() && picture->width >= 4)
+        add_potential(*picture, grid);
+    else
+        for (size_t i = 0; i < picture->size(); ++i)
+            grid.heights.push_back(float(height_of(*picture, i)));
     return grid;
 }
 
@@ -93,11 +107,12 @@ Grid parse_grid(Reader& reader) {
     const Token token = reader.peek();
     if (reader.take("function"))
         return grid_of_function(reader, token);
-    // The name of a format is skipped, because the file itself tells its format.
+    // The name of another format is skipped, because the file itself tells its format.
+    const bool potential = token.is("pot");
     if (std::any_of(std::begin(kFormats), std::end(kFormats),
                     [&](std::string_view word) { return token.is(word); }))
         reader.next();
-    return grid_of_picture(reader);
+    return grid_of_picture(reader, potential);
 }
 
 /// Adds the part of the triangle at or above the level.

@@ -146,6 +146,39 @@ std::vector<double> parse_factors(Reader& reader, int order) {
     return factors;
 }
 
+/// Returns the box in the space whose coordinates are asinh of these, where the length of a unit
+/// falls with the distance from the origin.
+Box compressed(const Box& box) {
+    const auto each = [](const dvec3& p) {
+        return dvec3(std::asinh(p.x), std::asinh(p.y), std::asinh(p.z));
+    };
+    return {each(box.lo), each(box.hi)};
+}
+
+dvec3 expanded(const dvec3& p) {
+    return {std::sinh(p.x), std::sinh(p.y), std::sinh(p.z)};
+}
+
+/// Cuts an endless polynomial in a large box so that cells grow with the distance from the origin,
+/// near which formulas usually bend. Cells of one size would be larger than all that.
+size_t cut_graded(const Polynomial& polynomial, const Box& box, int cells, Facets& out) {
+    const size_t before = out.corners.size();
+    const Field field{[&](const dvec3& p) { return polynomial(expanded(p)); }, {}};
+    // Far away, where endless surfaces are cut three times as finely, nobody sees it.
+    const size_t shown = cut_field(field, compressed(box), std::max(cells / 3, 1), out);
+    for (size_t i = before; i < out.corners.size(); ++i) {
+        Corner& corner = out.corners[i];
+        const dvec3& p = corner.position;
+        // A gradient goes back by the derivatives of the map.
+        corner.normal /= dvec3(std::cosh(p.x), std::cosh(p.y), std::cosh(p.z));
+        corner.position = expanded(p);
+    }
+    return shown;
+}
+
+/// A box whose longest side is longer is cut with graded cells.
+constexpr double kLargestEven = 100;
+
 void finish_polynomial(Reader& reader, Object& object, Polynomial polynomial) {
     EndlessShape shape;
     shape.bounds = [polynomial](const Box& box) { return tightened(polynomial, box); };
@@ -154,6 +187,8 @@ void finish_polynomial(Reader& reader, Object& object, Polynomial polynomial) {
         if (tight.empty())
             return size_t(0);
         out.smooth = true;
+        if (max_component(tight.extent()) > kLargestEven)
+            return cut_graded(polynomial, tight, cells, out);
         const double margin = 0.02 * max_component(tight.extent());
         return cut_field({[&polynomial](const dvec3& p) { return polynomial(p); }, {}},
                          tight.padded(margin), cells, out);

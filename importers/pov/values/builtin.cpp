@@ -171,10 +171,6 @@ Number strcmp(Reader& reader, const Token& token) {
     return Number::of(a < b ? -1 : a > b ? 1 : 0);
 }
 
-Number refuse(Reader& reader, const Token& token) {
-    reader.fail(token.place, fmt::format("{}() is not supported", token.name->text));
-}
-
 /// Reads `(lambda, omega, octaves, point)`.
 Number vturbulence(Reader& reader, const Token& token) {
     reader.expect('(', token.name->text);
@@ -282,7 +278,7 @@ const std::unordered_map<std::string_view, Builtin> kBuiltins = {
     {"min_extent", parse_extent},
     {"max_extent", parse_extent},
     {"trace", parse_trace},
-    {"inside", refuse},
+    {"inside", parse_inside},
     {"vturbulence", vturbulence}};
 
 /// A loop of concat() could otherwise fill the memory.

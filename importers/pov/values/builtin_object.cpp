@@ -62,6 +62,15 @@ Number parse_extent(Reader& reader, const Token& token) {
     return Number::of(token.is("min_extent") ? box.lo : box.hi);
 }
 
+Number parse_inside(Reader& reader, const Token& token) {
+    reader.expect('(', token.name->text);
+    const ObjectPtr object = parse_object_name(reader);
+    reader.take_comma();
+    const dvec3 point = parse_vector(reader);
+    reader.expect(')', token.name->text);
+    return Number::of(target_of(reader, object).contains(point));
+}
+
 Number parse_trace(Reader& reader, const Token& token) {
     reader.expect('(', token.name->text);
     const ObjectPtr object = parse_object_name(reader);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads the functions that ask about an object, min_extent, max_extent and trace, from their ( on.
+// Reads the functions that ask about an object, min_extent, max_extent, trace and inside, from
+// their ( on.
 #pragma once
 
 #include "importers/pov/values/expression.h"
@@ -13,5 +14,8 @@ Number parse_extent(Reader& reader, const Token& token);
 /// object, and puts the normal of length 1 there into the variable NORMAL. Both are 0 where the ray
 /// misses.
 Number parse_trace(Reader& reader, const Token& token);
+
+/// Reads (OBJECT, POINT). Returns 1 for a point inside of the object, else 0.
+Number parse_inside(Reader& reader, const Token& token);
 
 } // namespace ovc::pov

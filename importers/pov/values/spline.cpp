@@ -96,6 +96,15 @@ std::vector<double> curvatures(const std::vector<Point>& p, size_t i) {
     return m;
 }
 
+/// Returns the clock, moved to where a cubic_spline is defined: the first and the last point only
+/// give slopes, and of two points the spline is the middle.
+double within_cubic(const std::vector<Point>& p, double clock) {
+    const size_t n = p.size();
+    if (n == 2)
+        return 0.5 * (p[0].clock + p[1].clock);
+    return n > 2 && !std::isnan(clock) ? std::clamp(clock, p[1].clock, p[n - 2].clock) : clock;
+}
+
 double natural(const std::vector<Point>& p, size_t k, size_t i, double t) {
     const std::vector<double> m = curvatures(p, i);
     const double h = p[k + 1].clock - p[k].clock;
@@ -117,17 +126,18 @@ Number at(const Spline& spline, double clock) {
     for (Point& point : p)
         if (point.value.size == 1)
             point.value.v.fill(point.value.v[0]);
+    if (spline.kind == Spline::Kind::Cubic)
+        clock = within_cubic(p, clock);
     Number result = clock <= p.front().clock ? p.front().value : p.back().value;
     result.size = size;
     if (!(clock > p.front().clock && clock < p.back().clock)) // NaN is in no piece
         return result;
+    const size_t needed = spline.kind == Spline::Kind::Cubic ? 4 : 3;
+    const Spline::Kind kind = p.size() < needed ? Spline::Kind::Linear : spline.kind;
+    const size_t last = p.size() - (kind == Spline::Kind::Cubic ? 3 : 2);
     size_t k = 0; // the piece between points k and k + 1
-    while (p[k + 1].clock <= clock)
+    while (k < last && p[k + 1].clock <= clock)
         ++k;
-    Spline::Kind kind = spline.kind;
-    const bool inner = k > 0 && k + 2 < p.size();
-    if ((kind == Spline::Kind::Cubic && !inner) || p.size() < 3)
-        kind = Spline::Kind::Linear;
     for (size_t i = 0; i < size_t(size); ++i) {
         const double u = (clock - p[k].clock) / (p[k + 1].clock - p[k].clock);
         switch (kind) {

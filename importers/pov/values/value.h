@@ -127,18 +127,22 @@ struct ImageMap {
     std::string path;
     std::string asked_for_at; // "a.pov:12:3"
     ImageTexture image;
+    std::shared_ptr<const std::vector<uint8_t>> contents; // instead of the file's; null: none
 };
 
 struct PatternMap {
     Pattern pattern;
-    std::vector<MapStop> stops;        // at least one, in ascending order but for Average
-    ProgramPtr program;                // of Pattern::Kind::Function, in place of pattern.formula
-    std::optional<ImageMap> image_map; // instead of all these, except for the pattern's steps
+    std::vector<MapStop> stops; // at least one, in ascending order but for Average
+    ProgramPtr program;         // of Pattern::Kind::Function, in place of pattern.formula
+    /// With stops, the pattern is the brightness of this picture. Without any, the picture takes
+    /// the place of all these except the pattern's steps.
+    std::optional<ImageMap> image_map;
 };
 
 struct Interior {
     double ior = 1;
-    Absorption absorption; // a distance or power of 0: none
+    Absorption absorption; // a distance of 0: none
+    float caustics = 0;
     Notes notes;
 };
 

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reads julia_fractal: the points in a hyperplane of four dimensions that stay near the origin
+// while z becomes f(z) + c. POV-Ray's documentation (section 3.4.1.6, "Julia Fractal") has the
+// rules of its two algebras.
+#include "importers/pov/shapes/implicit.h"
+#include "importers/pov/shapes/shape.h"
+
+#include <array>
+#include <cmath>
+#include <complex>
+#include <string_view>
+
+namespace ovc::pov {
+
+namespace {
+
+using Complex = std::complex<double>;
+using Point4 = std::array<double, 4>; // x + y i + z j + w k
+
+double square_of(const Point4& p) {
+    return p[0] * p[0] + p[1] * p[1] + p[2] * p[2] + p[3] * p[3];
+}
+
+struct JuliaSet {
+    Point4 c{};
+    Point4 normal{0, 0, 0, 1}; // of the hyperplane, of any length, whose distance is
+    double distance = 0;       // from the origin
+    int iterations = 20;
+    bool quaternions = true;
+    std::string_view function = "sqr";
+    Complex power = 0;
+
+    Point4 of_quaternion(const Point4& p) const {
+        const double a = p[0], rest = square_of(p) - a * a;
+        const bool cube = function == "cube";
+        const double real = cube ? a * (a * a - 3 * rest) : a * a - rest;
+        const double along = cube ? 3 * a * a - rest : 2 * a;
+        return {real, along * p[1], along * p[2], along * p[3]};
+    }
+
+    Complex of_complex(const Complex& z) const {
+        static constexpr std::pair<std::string_view, Complex (*)(const Complex&)> kFunctions[] = {
+            {"cube", [](const Complex& x) { return x * x * x; }},
+            {"exp", [](const Complex& x) { return std::exp(x); }},
+            {"reciprocal", [](const Complex& x) { return 1.0 / x; }},
+            {"sin", [](const Complex& x) { return std::sin(x); }},
+            {"asin", [](const Complex& x) { return std::asin(x); }},
+            {"sinh", [](const Complex& x) { return std::sinh(x); }},
+            {"asinh", [](const Complex& x) { return std::asinh(x); }},
+            {"cos", [](const Complex& x) { return std::cos(x); }},
+            {"acos", [](const Complex& x) { return std::acos(x); }},
+            {"cosh", [](const Complex& x) { return std::cosh(x); }},
+            {"acosh", [](const Complex& x) { return std::acosh(x); }},
+            {"tan", [](const Complex& x) { return std::tan(x); }},
+            {"atan", [](const Complex& x) { return std::atan(x); }},
+            {"tanh", [](const Complex& x) { return std::tanh(x); }},
+            {"atanh", [](const Complex& x) { return std::atanh(x); }},
+            {"ln", [](const Complex& x) { return std::log(x); }}};
+        for (const auto& [name, call] : kFunctions)
+            if (name == function)
+                return call(z);
+        return function == "pwr" ? std::pow(z, power) : z * z;
+    }
+
+    /// Hypercomplex numbers are pairs of complex ones: those by (1 + k) / 2 and by (1 - k) / 2.
+    Point4 of_hypercomplex(const Point4& p) const {
+        const Complex u = of_complex({p[0] + p[3], p[1] - p[2]});
+        const Complex v = of_complex({p[0] - p[3], p[1] + p[2]});
+        return {0.5 * (u.real() + v.real()), 0.5 * (u.imag() + v.imag()),
+                0.5 * (v.imag() - u.imag()), 0.5 * (u.real() - v.real())};
+    }
+
+    /// Returns a number that is 0 where the last iteration reaches the distance of no return, and
+    /// below 0 where none does. Where povray's rays meet the set, the iteration before the last has
+    /// gone a distance of 1 + |c| among quaternions, and of 4 among hypercomplex numbers.
+    double operator()(const dvec3& at) const {
+        const double farthest = quaternions ? 1 + std::sqrt(square_of(c)) : 4;
+        const double bailout = farthest * farthest;
+        const double off = distance * std::sqrt(square_of(normal)) - normal[0] * at.x -
+                           normal[1] * at.y - normal[2] * at.z;
+        Point4 z{at.x, at.y, at.z, off / normal[3]};
+        double square = square_of(z);
+        for (int i = 1; i < iterations && square <= bailout; ++i) {
+            z = quaternions ? of_quaternion(z) : of_hypercomplex(z);
+            for (size_t k = 0; k < 4; ++k)
+                z[k] += c[k];
+            square = square_of(z);
+        }
+        const double value = std::log(square / bailout);
+        return value >= -3 ? std::min(value, 3.0) : std::isnan(value) ? 3.0 : -3.0;
+    }
+};
+
+Point4 parse_point(Reader& reader) {
+    const Number n = resized(reader, parse_number(reader), 4);
+    return {n.v[0], n.v[1], n.v[2], n.v[3]};
+}
+
+/// Takes the name of a function that is iterated. Returns false where none is next.
+bool take_function(Reader& reader, JuliaSet& set) {
+    static constexpr std::string_view kNames[] = {
+        "sqr",  "cube", "exp",   "reciprocal", "sin",  "asin", "sinh",  "asinh", "cos",
+        "acos", "cosh", "acosh", "tan",        "atan", "tanh", "atanh", "ln"};
+    for (const std::string_view name : kNames)
+        if (reader.take(name)) {
+            set.function = name;
+            return true;
+        }
+    if (!reader.take("pwr"))
+        return false;
+    set.function = "pwr";
+    reader.expect('(', "pwr");
+    const double real = parse_float(reader);
+    reader.take_comma();
+    set.power = {real, parse_float(reader)};
+    reader.expect(')', "pwr");
+    return true;
+}
+
+} // namespace
+
+Shape parse_julia_fractal(Reader& reader) {
+    JuliaSet set;
+    set.c = parse_point(reader);
+    const Place place = reader.place();
+    for (;;) {
+        if (reader.take("quaternion"))
+            set.quaternions = true;
+        else if (reader.take("hypercomplex"))
+            set.quaternions = false;
+        else if (reader.take("max_iteration"))
+            set.iterations = parse_int(reader, 1, 1000, "max_iteration");
+        else if (reader.take("precision"))
+            parse_float(reader); // the tolerance says how exactly shapes are cut
+        else if (reader.take("slice")) {
+            set.normal = parse_point(reader);
+            reader.take_comma();
+            set.distance = parse_float(reader);
+        } else if (!take_function(reader, set) && !reader.take(','))
+            break;
+    }
+    if (set.quaternions && set.function != "sqr" && set.function != "cube")
+        reader.fail(place, "found a function of quaternions other than sqr and cube");
+    if (!(std::abs(set.normal[3]) > 0))
+        reader.fail(place, "found a slice whose fourth component is 0");
+    Shape shape;
+    shape.per_square = 4; // a surface net has about two triangles for each cell that it crosses
+    shape.box = Box{dvec3(-2), dvec3(2)};
+    shape.cut = [set](int segments, bool, Facets& out) {
+        cut_field({set, {}}, Box{dvec3(-2.01), dvec3(2.01)}, field_cells(segments), out);
+        out.smooth = true;
+    };
+    return shape;
+}
+
+} // namespace ovc::pov
