@@ -5,8 +5,8 @@
 
 #include "host/arguments/arguments.h"
 #include "host/camera/camera.h"
+#include "host/job/render_job.h"
 #include "host/ranks/ranks.h"
-#include "host/render/render_job.h"
 
 #include <fmt/format.h>
 
@@ -98,6 +98,12 @@ void FilmArguments::add_tones_to(CLI::App& app) {
                    "Fits bright light into .png files: none (cut off at white), filmic (Hable's "
                    "curve) or aces (Narkowicz's); .exr files keep linear light; default: none")
         ->type_name(choice_names(kToneMaps));
+    app.add_flag("--denoise", denoise_,
+                 "The finished picture goes through Intel's Open Image Denoise, if that is "
+                 "installed (docs/guide/film.md)");
+    app.add_flag("--view", view_,
+                 "A window shows the picture, with --time or --noise while it is made; it stays "
+                 "until it is closed; needs GLFW (Debian: libglfw3)");
     app.add_option("--png-bits", png_bits_, "Bits a channel of .png files; default: 8")
         ->type_name(choice_names(kPngBits));
 }
@@ -264,6 +270,15 @@ Result<Done> FilmArguments::resolve_tones(RenderJob& job) const {
             return Error{stops.error().message + ", or auto"};
         job.development.exposure = Exposure{.stops = *stops};
     }
+    if (denoise_) {
+        const Result<const Denoiser*> denoiser = Denoiser::load();
+        if (!denoiser)
+            return denoiser.error();
+        job.denoiser = *denoiser;
+    }
+    if (view_ && Ranks::are_there())
+        return Error{"--view is for one process, and not for mpirun"};
+    job.view = view_;
     const Result<size_t> curve = parse_choice("--tone-map", tone_map_, kToneMaps);
     if (!curve)
         return curve.error();

@@ -43,6 +43,7 @@ private:
     std::string lens_radius_, focus_;
     std::string exposure_, tone_map_;
     std::string png_bits_;
+    bool denoise_ = false, view_ = false;
 };
 
 } // namespace ovc

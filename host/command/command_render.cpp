@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // overcast render: a scene in, pictures and statistics out. Here are its options, and their checks;
-// host/render/render_job.cpp does the work.
+// host/job/render_job.cpp does the work.
 #include "host/arguments/backend_arguments.h"
 #include "host/arguments/film_arguments.h"
 #include "host/arguments/log_arguments.h"
@@ -9,9 +9,9 @@
 #include "host/camera/camera.h"
 #include "host/camera/camera_path_file.h"
 #include "host/command/command.h"
+#include "host/job/render_job.h"
 #include "host/ranks/join_ranks.h"
 #include "host/render/frames.h"
-#include "host/render/render_job.h"
 #include "host/terminal/interrupt.h"
 #include "testscenes/catalog.h"
 

@@ -2,6 +2,8 @@
 // The variance of a sample is estimated from the spread of means, each weighed by its samples.
 #include "host/film/noise_estimate.h"
 
+#include "core/scene.h"
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -28,8 +30,19 @@ static double slope_of_srgb(double light) {
     return x <= 0.0031308 ? 12.92 : 1.055 / 2.4 * std::pow(x, 1 / 2.4 - 1);
 }
 
-double NoiseEstimate::noise(std::span<const uint32_t> pixels, uint32_t samples,
-                            double scale) const {
+/// Returns the slope of the code that a display shows of a film's light.
+static double slope_of_code(double light, double scale, double gamma) {
+    const double linear = double(linear_light(float(light), gamma));
+    const double step = 0.01 * std::max(light, 0.001); // long enough for floats
+    const double slope_of_light = gamma == 1 ? 1
+                                             : (double(linear_light(float(light + step), gamma)) -
+                                                double(linear_light(float(light - step), gamma))) /
+                                                   (2 * step);
+    return slope_of_srgb(scale * linear) * scale * slope_of_light;
+}
+
+double NoiseEstimate::noise(std::span<const uint32_t> pixels, uint32_t samples, double scale,
+                            double gamma) const {
     dvec3 light(0), variance(0); // of one sample, summed over the pixels
     for (const uint32_t number : pixels) {
         const Pixel& pixel = pixels_[number];
@@ -43,7 +56,7 @@ double NoiseEstimate::noise(std::span<const uint32_t> pixels, uint32_t samples,
     double squares = 0;
     for (int channel = 0; channel < 3; ++channel) {
         // One slope for the block: the mean of a pixel alone would be too noisy to ask for it.
-        const double slope = scale * slope_of_srgb(scale * light[channel] / count);
+        const double slope = slope_of_code(light[channel] / count, scale, gamma);
         squares += slope * slope * variance[channel] / (count * samples);
     }
     return std::sqrt(squares / 3);

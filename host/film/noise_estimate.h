@@ -22,9 +22,11 @@ public:
     void add(const Film& film, std::span<const uint32_t> pixels);
 
     /// Returns the root mean square, over these pixels and their colors, of the error that a mean
-    /// of `samples` has to expect, as a display shows it: in sRGB codes from 0 to 1. scale: of the
-    /// light before it is shown. Infinite where a pixel has had fewer than two films.
-    double noise(std::span<const uint32_t> pixels, uint32_t samples, double scale) const;
+    /// of `samples` has to expect, as a display shows it: in sRGB codes from 0 to 1. scale: of
+    /// linear light before it is shown. gamma: of what the films hold (Scene::gamma). Infinite
+    /// where a pixel has had fewer than two films.
+    double noise(std::span<const uint32_t> pixels, uint32_t samples, double scale,
+                 double gamma = 1) const;
 
     /// Returns the mean of what was added.
     Image image(uint32_t width, uint32_t height) const;

@@ -115,6 +115,11 @@ static Json frame_of(const FrameStats& f) {
     frame["queues"]["longest"] = f.tracing.longest_queue;
     frame["rays"] = rays_of(f.report.rays);
     frame["active"] = active_of(f.active);
+    if (const std::optional<Sampled>& sampled = f.report.sampled)
+        frame["sampled"] = {{"min", sampled->min},
+                            {"mean", sampled->mean},
+                            {"max", sampled->max},
+                            {"noise", sampled->noise}};
     frame["gpu_peak_bytes"] = f.tracing.gpu_peak_bytes;
     frame["host_peak_bytes"] = f.host_peak_bytes;
     add_times(frame["time"], f.report);

@@ -2,6 +2,7 @@
 // The curves of tone mapping, and the exposure that suits a picture.
 #include "host/output/tone_mapping.h"
 
+#include "core/scene.h"
 #include "core/system/parallel.h"
 
 #include <algorithm>
@@ -26,6 +27,12 @@ double automatic_stops(const Image& image) {
             ++count;
         }
     return count > 0 ? std::log2(kMiddleGrey) - sum / double(count) : 0;
+}
+
+void to_linear(Image& image, double gamma) {
+    for (vec4& pixel : image.pixels)
+        for (int i = 0; i < 3; ++i)
+            pixel[i] = linear_light(pixel[i], gamma);
 }
 
 void expose(Image& image, double stops) {

@@ -26,6 +26,9 @@ enum class ToneMap : uint8_t {
 /// Source: Reinhard et al. 2002, "Photographic Tone Reproduction for Digital Images", formula 1.
 double automatic_stops(const Image& image);
 
+/// Converts the light of a scene of that gamma (Scene::gamma) to linear light.
+void to_linear(Image& image, double gamma);
+
 /// Doubles the image's light so many times.
 void expose(Image& image, double stops);
 

@@ -38,9 +38,10 @@ uint32_t more_samples(uint32_t samples) {
 
 class Progression {
 public:
-    Progression(const Progressive& options, const RenderPass& render, const RenderObserver& observe,
-                Film& film)
+    Progression(const Progressive& options, double gamma, const RenderPass& render,
+                const RenderObserver& observe, Film& film)
         : options_(options),
+          gamma_(gamma),
           render_(render),
           observe_(observe),
           film_(film),
@@ -156,7 +157,7 @@ private:
         for (const uint32_t number : group.blocks) {
             Block& block = blocks_[number];
             block.estimated = std::max(there, wanted);
-            block.noise = estimate_.noise(block.pixels, samples, scale);
+            block.noise = estimate_.noise(block.pixels, samples, scale, gamma_);
         }
         return true;
     }
@@ -165,9 +166,12 @@ private:
     double stops() const {
         if (!options_.exposure)
             return 0;
-        return options_.exposure->is_automatic
-                   ? automatic_stops(estimate_.image(film_.width(), film_.height()))
-                   : options_.exposure->stops;
+        if (!options_.exposure->is_automatic)
+            return options_.exposure->stops;
+        Image image = estimate_.image(film_.width(), film_.height());
+        if (gamma_ != 1)
+            to_linear(image, gamma_);
+        return automatic_stops(image);
     }
 
     /// Takes samples of the blocks until each of their pixels has so many. A pass that is cut off
@@ -295,6 +299,7 @@ private:
     }
 
     const Progressive& options_;
+    const double gamma_;
     const RenderPass& render_;
     const RenderObserver& observe_;
     Film& film_;
@@ -316,10 +321,11 @@ private:
 
 } // namespace
 
-Result<RenderReport> render_progressively(const Progressive& options, const RenderPass& render,
-                                          const RenderObserver& observe, Film& film) {
+Result<RenderReport> render_progressively(const Progressive& options, double gamma,
+                                          const RenderPass& render, const RenderObserver& observe,
+                                          Film& film) {
     assert(film.samples() == 1 && options.max_samples >= 1);
-    return Progression(options, render, observe, film).run();
+    return Progression(options, gamma, render, observe, film).run();
 }
 
 } // namespace ovc

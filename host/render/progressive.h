@@ -30,9 +30,10 @@ using RenderPass = std::function<Result<RenderReport>(const Pass&, const RenderO
 /// the limit, and without one to the noisiest.
 ///
 /// The number of a block's samples depends on samples that the picture does not have, and on the
-/// clock, so that each pixel's expectation is the truth. Where observe() stops it, the film has the
-/// passes that are complete, if any, and the report is not complete.
-Result<RenderReport> render_progressively(const Progressive& options, const RenderPass& render,
-                                          const RenderObserver& observe, Film& film);
+/// clock, so that each pixel's expectation is the truth. gamma: of the scene. Where observe() stops
+/// it, the film has the passes that are complete, if any, and the report is not complete.
+Result<RenderReport> render_progressively(const Progressive& options, double gamma,
+                                          const RenderPass& render, const RenderObserver& observe,
+                                          Film& film);
 
 } // namespace ovc

@@ -56,7 +56,7 @@ struct Passes {
 
 Image picture(Passes& passes, const Progressive& how, std::optional<Sampled>* sampled = nullptr) {
     Film film(kPassesSide, kPassesSide);
-    const auto report = render_progressively(how, std::ref(passes), {}, film);
+    const auto report = render_progressively(how, 1, std::ref(passes), {}, film);
     EXPECT_TRUE(report && report->complete);
     EXPECT_EQ(film.pixels_done(), kPassesSide * kPassesSide);
     if (sampled)
@@ -139,7 +139,7 @@ TEST(Progressive, ShowsACoarsePictureFirstAndEndsWhereItIsInterrupted) {
     Film film(kPassesSide, kPassesSide);
     int calls = 0;
     const auto report = render_progressively(
-        how, std::ref(passes), [&](const RenderReport&) { return ++calls < 4; }, film);
+        how, 1, std::ref(passes), [&](const RenderReport&) { return ++calls < 4; }, film);
     ASSERT_TRUE(report);
     EXPECT_FALSE(report->complete);
     EXPECT_EQ(shown, 1); // less than a second has passed

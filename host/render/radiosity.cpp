@@ -113,7 +113,15 @@ private:
             Ray ray;
             ray.org = point.at;
             ray.dir = around(point.normal, u);
-            to.push(ray, starts_[number], {pixel, i, 0, RayKind::Bounce, true, vec3(1), 0, 0, {}});
+            to.push(ray, starts_[number],
+                    {.pixel = pixel,
+                     .sample = i,
+                     .depth = 0,
+                     .kind = RayKind::Bounce,
+                     .reflected = true,
+                     .scattered = false,
+                     .weight = vec3(1),
+                     .density = 0});
         }
     }
 

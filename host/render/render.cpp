@@ -259,7 +259,7 @@ static Result<RenderReport> render_by(Tracing& tracing, const RenderOptions& opt
                                       const RenderObserver& observe, Film& film) {
     if (options.progressive)
         return render_progressively(
-            *options.progressive,
+            *options.progressive, gamma,
             [&](const Pass& pass, const RenderObserver& watch, Film& to) {
                 return tracing.render(pass, watch, to);
             },

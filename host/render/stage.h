@@ -3,7 +3,7 @@
 #pragma once
 
 #include "host/backend/backend.h"
-#include "host/render/render_job.h"
+#include "host/job/render_job.h"
 
 #include <memory>
 #include <optional>

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Exposure scales light in every file, and tone mapping is for displays alone.
-#include "host/render/development.h"
-
-#include "core/scene.h"
+#include "host/job/development.h"
 
 #include <fmt/format.h>
 
@@ -10,17 +8,15 @@
 
 namespace ovc {
 
-/// Converts the light of a scene with an assumed_gamma to the linear light that files hold.
-static void to_linear(Image& image, double gamma) {
-    for (vec4& pixel : image.pixels)
-        for (int i = 0; i < 3; ++i)
-            pixel[i] = linear_light(pixel[i], gamma);
+Image light_of(const Film& film, double gamma) {
+    Image image = film.image();
+    if (gamma != 1)
+        to_linear(image, gamma);
+    return image;
 }
 
-DevelopedImage develop(const Film& film, double gamma, const Development& how) {
-    DevelopedImage developed{film.image(), std::nullopt};
-    if (gamma != 1)
-        to_linear(developed.light, gamma);
+DevelopedImage develop(Image light, const Development& how) {
+    DevelopedImage developed{std::move(light), std::nullopt};
     if (how.exposure) {
         developed.stops =
             how.exposure->is_automatic ? automatic_stops(developed.light) : how.exposure->stops;
@@ -29,20 +25,23 @@ DevelopedImage develop(const Film& film, double gamma, const Development& how) {
     return developed;
 }
 
+Image for_display(const DevelopedImage& developed, const Development& how) {
+    Image image = developed.light;
+    map_tones(image, how.tone_map);
+    return image;
+}
+
 Result<Done> save_picture(const DevelopedImage& developed, std::span<const std::string> files,
                           const Development& how, FileContents contents) {
     if (developed.stops)
         contents.notes.push_back({"overcast:exposure", fmt::format("{:.4g}", *developed.stops)});
     Result<Done> all = Done{};
-    Image for_displays;
+    Image tones;
     for (const std::string& file : files) {
         const bool is_mapped = how.tone_map != ToneMap::None && !takes_layers(file);
-        if (is_mapped && for_displays.pixels.empty()) {
-            for_displays = developed.light;
-            map_tones(for_displays, how.tone_map);
-        }
-        const Result<Done> saved =
-            save_image(is_mapped ? for_displays : developed.light, file, contents);
+        if (is_mapped && tones.pixels.empty())
+            tones = for_display(developed, how);
+        const Result<Done> saved = save_image(is_mapped ? tones : developed.light, file, contents);
         if (!saved && all)
             all = saved;
     }

@@ -4,8 +4,9 @@
 
 #include "host/arguments/arguments.h"
 #include "host/backend/backend.h"
+#include "host/job/development.h"
 #include "host/output/aov.h"
-#include "host/render/development.h"
+#include "host/output/denoiser.h"
 #include "host/render/render.h"
 #include "host/scene/scene_pictures.h"
 #include "host/scene/scene_source.h"
@@ -52,8 +53,10 @@ struct RenderJob {
     std::optional<double> lens_radius; // of the pictures' cameras; 0: no lens; none: their own
     std::optional<double> focus;       // the lens's distance; none: the cameras' target
     Development development;
-    std::optional<uint32_t> max_depth; // none: the scene's, else that of `render`
-    uint32_t samples = 1;              // camera rays a pixel
+    const Denoiser* denoiser = nullptr; // that finished pictures go through; or null
+    bool view = false;                  // a window shows the picture, and each frame
+    std::optional<uint32_t> max_depth;  // none: the scene's, else that of `render`
+    uint32_t samples = 1;               // camera rays a pixel
     BackendOptions backend;
     Aovs aovs;                                       // in the outputs that take layers
     int png_bits = 8;                                // per channel, 8 or 16

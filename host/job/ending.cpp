@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Brings together what all ranks have counted, and says what was written or is left to do.
-#include "host/render/ending.h"
+#include "host/job/ending.h"
 
 #include "core/text/printable.h"
 #include "host/film/unfinished.h"

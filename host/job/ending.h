@@ -5,8 +5,8 @@
 #include "core/result.h"
 #include "core/scene.h"
 #include "core/system/stopwatch.h"
+#include "host/job/render_job.h"
 #include "host/output/stats.h"
-#include "host/render/render_job.h"
 
 #include <vector>
 

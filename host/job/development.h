@@ -25,8 +25,14 @@ struct DevelopedImage {
     std::optional<double> stops; // of that exposure, where there is one
 };
 
-/// Returns the picture of a film. gamma: of the scene whose light it has (Scene::gamma).
-DevelopedImage develop(const Film& film, double gamma, const Development& how);
+/// Returns the linear light of a film. gamma: of the scene (Scene::gamma).
+Image light_of(const Film& film, double gamma);
+
+/// Returns the picture that is made of linear light.
+DevelopedImage develop(Image light, const Development& how);
+
+/// Returns what a display shows of it: linear light again.
+Image for_display(const DevelopedImage& developed, const Development& how);
 
 /// Writes the picture to each file: its light to formats that hold layers, and tones for a display
 /// to others. contents: besides the exposure, which it notes. It tries every file; on errors it

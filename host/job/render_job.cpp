@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reads the scene and builds the structure once, then renders picture after picture.
-#include "host/render/render_job.h"
+#include "host/job/render_job.h"
 
 #include "core/file/value_bytes.h"
 #include "core/system/parallel.h"
@@ -9,9 +9,10 @@
 #include "host/backend/device_opening.h"
 #include "host/camera/camera.h"
 #include "host/film/unfinished.h"
+#include "host/job/ending.h"
+#include "host/job/watchers.h"
 #include "host/output/stats.h"
 #include "host/ranks/shared_film.h"
-#include "host/render/ending.h"
 #include "host/render/frames.h"
 #include "host/render/render.h"
 #include "host/render/stage.h"
@@ -22,7 +23,6 @@
 #include "host/terminal/interrupt.h"
 #include "host/terminal/message.h"
 #include "host/terminal/progress.h"
-#include "host/terminal/progress_lines.h"
 #include "host/terminal/version.h"
 #include "importers/scene_fields.h"
 #include "importers/scene_file.h"
@@ -105,10 +105,10 @@ struct View {
 class Rendering {
 public:
     Rendering(const RenderJob& job, const PicturePart& part, Scene& scene, Stage& stage,
-              const InterruptGuard& interrupt, const LogSink& log, ProgressLines& lines)
+              const InterruptGuard& interrupt, const LogSink& log, Watchers& watchers)
         : job_(job),
           log_(log),
-          lines_(lines),
+          watchers_(watchers),
           options_(render_options(job, part, scene)),
           scene_(scene),
           lights_(stage.lights()),
@@ -219,7 +219,8 @@ private:
                           /* shown= */ !job_.quiet);
         const auto observe = [&](const RenderReport& report) {
             progress.update(report);
-            lines_.progress(shot.frame, double(report.pixels_done) / double(pixels), report);
+            watchers_.lines.progress(shot.frame, double(report.pixels_done) / double(pixels),
+                                     report);
             return !interrupt_.interrupted();
         };
         RenderOptions options = options_;
@@ -237,14 +238,16 @@ private:
         std::vector<std::string> files = outputs_of(shot);
         for (std::string& file : files)
             file = unfinished_picture(file);
-        if (save_picture(develop(so_far, scene_.gamma, job_.development), files, job_.development,
-                         {.png_bits = job_.png_bits}))
+        const DevelopedImage developed = develop(light_of(so_far, scene_.gamma), job_.development);
+        if (watchers_.window)
+            watchers_.window->show(for_display(developed, job_.development));
+        if (save_picture(developed, files, job_.development, {.png_bits = job_.png_bits}))
             tell_of(shot, files, /* finished= */ false);
     }
 
     void tell_of(const View& shot, const std::vector<std::string>& files, bool finished) {
         for (const std::string& file : files)
-            lines_.picture(shot.frame, file, finished);
+            watchers_.lines.picture(shot.frame, file, finished);
     }
 
     Result<Done> save_finished(const View& shot, const Film& film, const FrameStats& frame) {
@@ -300,34 +303,51 @@ private:
         return options_.progressive || options_.antialias ? kMaxSamples : job_.samples;
     }
 
+    Result<std::vector<Layer>> traced_layers(const View& shot, const Aovs& aovs) {
+        return checked(trace_aovs(scene_, Pinhole(shot.camera, *options_.part, &scene_),
+                                  Sight(scene_, options_.cutouts), backend_, aovs,
+                                  samples_of_layers(),
+                                  {.filter = options_.filter, .seed = options_.seed}));
+    }
+
+    Result<Done> denoise(Image& light, const View& shot) {
+        const auto features = traced_layers(shot, {.normal = true, .albedo = true});
+        return features ? job_.denoiser->denoise(light, *features) : Result<Done>(features.error());
+    }
+
     Result<Done> save_all(const std::vector<std::string>& outputs, const View& shot,
                           const Film& film, const FrameStats& frame) {
-        const DevelopedImage developed = develop(film, scene_.gamma, job_.development);
+        Image light = light_of(film, scene_.gamma);
+        if (job_.denoiser && frame.report.complete)
+            if (const Result<Done> done = denoise(light, shot); !done)
+                return done;
+        const DevelopedImage developed = develop(std::move(light), job_.development);
         FileContents contents;
         contents.png_bits = job_.png_bits;
         contents.notes = notes_of(frame);
         if (job_.aovs.any()) {
-            Result<std::vector<Layer>> traced = checked(trace_aovs(
-                scene_, Pinhole(shot.camera, *options_.part, &scene_),
-                Sight(scene_, options_.cutouts), backend_, job_.aovs, samples_of_layers(),
-                {.filter = options_.filter, .seed = options_.seed}));
+            Result<std::vector<Layer>> traced = traced_layers(shot, job_.aovs);
             if (!traced)
                 return traced.error();
             contents.layers = std::move(*traced);
         }
         if (const std::optional<Sampled>& found = frame.report.sampled)
             say(log_, LogLevel::Info,
-                fmt::format("{:.1f} samples a pixel, {} to {}; noise of the noisiest block: {:.2g}",
-                            found->mean, found->min, found->max, found->noise));
+                fmt::format("{:.1f} samples a pixel, {} to {}; noise of the noisiest block: {}",
+                            found->mean, found->min, found->max,
+                            std::isfinite(found->noise) ? fmt::format("{:.2g}", found->noise)
+                                                        : "not known after one pass"));
         if (developed.stops && job_.development.exposure->is_automatic)
             say(log_, LogLevel::Info,
                 fmt::format("--exposure auto: {:+.2f} stops", *developed.stops));
+        if (watchers_.window)
+            watchers_.window->show(for_display(developed, job_.development));
         return save_picture(developed, outputs, job_.development, std::move(contents));
     }
 
     const RenderJob& job_;
     const LogSink& log_;
-    ProgressLines& lines_;
+    Watchers& watchers_;
     const RenderOptions options_;
     Scene& scene_;
     const std::vector<Light>& lights_; // as the scene or the user has them
@@ -399,7 +419,7 @@ static void tell_of_up_left_out(const RenderJob& job, const Scene& scene, const 
 /// Renders every shot in turn until one is interrupted.
 static Result<Done> render_shots(const RenderJob& job, std::span<const std::byte> there,
                                  const PicturePart& part, Stage& stage, Scene& scene,
-                                 const LogSink& log, ProgressLines& lines, RenderStats& stats) {
+                                 const LogSink& log, Watchers& watchers, RenderStats& stats) {
     stats.report.complete = true;
     const InterruptGuard interrupt; // of all shots, or one between two of them would be forgotten
     const std::vector<Shot> shots =
@@ -426,7 +446,7 @@ static Result<Done> render_shots(const RenderJob& job, std::span<const std::byte
             return Error{fmt::format("{}: {}", job.scene.name(), fine.error().message)};
         begun.seconds_scene = watch.seconds();
         const Result<Done> done =
-            Rendering(job, part, scene, stage, interrupt, log, lines).run(view, begun, stats);
+            Rendering(job, part, scene, stage, interrupt, log, watchers).run(view, begun, stats);
         if (!done || !stats.report.complete)
             return done;
     }
@@ -484,15 +504,26 @@ static int say_all_is_there(const RenderJob& job) {
     return kExitOk;
 }
 
+static Result<Done> open_window(const RenderJob& job, const ImageSize& size, Watchers& watchers) {
+    if (!job.view)
+        return Done{};
+    Result<std::unique_ptr<Window>> window =
+        Window::open("overcast: " + job.scene.name(), size.width, size.height);
+    if (!window)
+        return window.error();
+    watchers.window = std::move(*window);
+    return Done{};
+}
+
 /// there: whether each frame is there already.
-static Result<int> render_others(const RenderJob& job, const RankBytes& there,
-                                 ProgressLines& lines) {
+static Result<int> render_others(const RenderJob& job, const RankBytes& there, Watchers& watchers) {
     const Stopwatch total;
     const std::optional<ThreadLimit> threads = limit_threads(job.threads);
     const LogSink log = standard_error_log(job.log_level);
     tell_of_nothing_to_go_on_with(job, log);
     RenderStats stats;
-    prepare_process(job.backend);
+    if (!job.view) // Mesa's 512 bits crash where a window is drawn
+        prepare_process(job.backend);
     DeviceOpening opening(job.backend);
     SceneCache cache(job.cache, job.scene, job.backend, job.size);
     Result<Scene> scene = cache.open(log);
@@ -512,6 +543,8 @@ static Result<int> render_others(const RenderJob& job, const RankBytes& there,
     stats.width = part->size.width;
     stats.height = part->size.height;
     stats.seconds_import = total.seconds();
+    if (const Result<Done> opened = open_window(job, part->size, watchers); !opened)
+        return opened.error();
     stats.scene_from_cache = cache.found();
 
     tell_of_up_left_out(job, *scene, log);
@@ -533,7 +566,7 @@ static Result<int> render_others(const RenderJob& job, const RankBytes& there,
     options.saved = {}; // of the first moment
     options.sample = {};
     Stage stage(job, *scene, pictures, std::move(*backend), options);
-    Result<Done> done = render_shots(job, there, *part, stage, *scene, log, lines, stats);
+    Result<Done> done = render_shots(job, there, *part, stage, *scene, log, watchers, stats);
     if (!done)
         return done.error();
     if (done = pictures.check(*scene); !done)
@@ -552,8 +585,11 @@ Result<int> render(const RenderJob& job) {
         ProgressLines::open(is_first_rank(job) ? job.progress : std::string());
     if (!lines)
         return lines.error();
-    const Result<int> code = render_others(job, *there, *lines);
-    lines->end(code && *code == kExitOk);
+    Watchers watchers{std::move(*lines), nullptr};
+    const Result<int> code = render_others(job, *there, watchers);
+    watchers.lines.end(code && *code == kExitOk);
+    if (watchers.window && code && *code == kExitOk)
+        watchers.window->wait([] { return true; }); // or Ctrl-C, which ends the program
     return code;
 }
 
