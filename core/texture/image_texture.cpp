@@ -9,15 +9,14 @@
 
 namespace ovc {
 
+double share_of_turn(double a, double b) {
+    const double share = std::atan2(b, a) / (2 * std::numbers::pi);
+    return share < 0 ? share + 1 : share;
+}
+
 namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
-
-/// Returns the angle from +a over +b as a share of a turn, in [0, 1).
-double share_of_turn(double a, double b) {
-    const double share = std::atan2(b, a) / kTurn;
-    return share < 0 ? share + 1 : share;
-}
 
 dvec2 octahedral(const dvec3& direction) {
     const dvec3 d = glm::abs(direction);

@@ -10,6 +10,9 @@
 
 namespace ovc {
 
+/// Returns the angle from +a over +b as a share of a turn, in [0, 1).
+double share_of_turn(double a, double b);
+
 /// Light x rgb x filter + light x transmit goes through a place of a surface.
 struct TransparentColor {
     vec3 rgb{0};

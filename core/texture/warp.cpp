@@ -3,6 +3,8 @@
 // found by asking povray for values.
 #include "core/texture/warp.h"
 
+#include "core/texture/image_texture.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -42,12 +44,6 @@ dvec3 drawn_by_hole(const TextureStep& step, const dvec3& at) {
         return at;
     const double power = std::min(std::pow((radius - length) / radius, falloff) * strength, 1.0);
     return at + (step.rows[1].z != 0 ? -power : power) * way;
-}
-
-/// Returns the angle from +a over +b as a share of a turn, in [0, 1).
-double share_of_turn(double a, double b) {
-    const double share = std::atan2(b, a) / (2 * std::numbers::pi);
-    return share < 0 ? share + 1 : share;
 }
 
 /// Returns the point turned from the axis of z, along which these warps are defined, to another.

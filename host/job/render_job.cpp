@@ -504,6 +504,15 @@ static int say_all_is_there(const RenderJob& job) {
     return kExitOk;
 }
 
+/// Ranks share a picture out, and none could gather its light alone.
+static Result<Done> check_ranks(const RenderJob& job, const Scene& scene) {
+    if (job.render.ranks && scene.radiosity && job.render.integrator == IntegratorKind::Whitted)
+        return Error{fmt::format("{}: radiosity is for one process; leave out mpirun, or give "
+                                 "--integrator path",
+                                 job.scene.name())};
+    return Done{};
+}
+
 static Result<Done> open_window(const RenderJob& job, const ImageSize& size, Watchers& watchers) {
     if (!job.view)
         return Done{};
@@ -549,6 +558,8 @@ static Result<int> render_others(const RenderJob& job, const RankBytes& there, W
 
     tell_of_up_left_out(job, *scene, log);
     if (const Result<Done> fine = check_frames(job, *scene); !fine)
+        return fine.error();
+    if (const Result<Done> fine = check_ranks(job, *scene); !fine)
         return fine.error();
     BackendOptions options = options_for(job, *scene);
     const std::vector<Ray> sample = camera_sample(job, *part, *scene);
