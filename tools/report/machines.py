@@ -51,7 +51,8 @@ def projected(rates, machine):
             here = rays / ranks
             away = here * scale.away_at(rates, ranks)
             takes = {"cores": imbalance * (here + away) * deeper * machine.visit_seconds +
-                     away * machine.away_seconds + here * machine.shade_seconds,
+                     away * machine.away_seconds +
+                     here * (machine.shade_seconds + (machine.route_seconds if ranks > 1 else 0)),
                      "network": away * (model.VISIT_BYTES + model.ANSWER_BYTES) / NETWORK,
                      "disk": share / 2 / DISK if share > MEMORY else 0}
             limit = max(takes, key=takes.get)
@@ -63,7 +64,7 @@ def projected(rates, machine):
 def machines_figures(documents):
     document = documents.get("machines")
     runs = data.Runs(document)
-    if not runs or not {"1", "2"} <= {key.split("-")[1] for key in runs.keys()}:
+    if not runs or not {"1", "2", "4"} <= {key.split("-")[1] for key in runs.keys()}:
         return {"rows": [], "projection": []}
     rates = rates_of(runs, document["machine"]["threads"])
     machine = scale.fitted(rates)

@@ -30,6 +30,7 @@ class Machine:
     batch_seconds: float = 2e-4    # of the server, a batch, besides its visits
     away_seconds: float = 1e-6     # of home and server together, a visit elsewhere, besides tracing
     shade_seconds: float = 1e-7    # of the home, a ray
+    route_seconds: float = 0.0     # of the home, a ray of a shared scene: where it goes
     message_seconds: float = 2e-6  # of latency, a message
     message_cpu: float = 1e-6      # of the home, a message
     bandwidth: float = 1e10        # bytes a second, of a node each way; no limit within a node
@@ -196,7 +197,10 @@ class Simulation:
             self.shade(home, batch)
 
     def shade(self, home, batch):
-        self.at(self.at_home(home, batch.rays * self.machine.shade_seconds), self.begin, home)
+        seconds = self.machine.shade_seconds
+        if self.job.ranks > 1:
+            seconds += self.machine.route_seconds
+        self.at(self.at_home(home, batch.rays * seconds), self.begin, home)
 
 
 def simulate(machine, job):

@@ -77,15 +77,19 @@ def job_of(run, ranks):
 
 
 def fitted(rates):
-    """The machine whose one and two ranks take the CPU seconds that were measured."""
-    alone, two = rates["runs"]["1"], rates["runs"]["2"]
+    """The machine whose one, two and four ranks take the CPU seconds that were measured: what ranks
+    take more grows with rays and with visits elsewhere."""
+    alone, two, four = (rates["runs"][ranks] for ranks in "124")
     ray = alone["cpu"] / alone["rays"]
     shading = alone["shade"] / (alone["shade"] + alone["trace"])
-    away = two["away_per_ray"] * two["rays"]
+    more = [(run["cpu"] - alone["cpu"]) / run["rays"] for run in (two, four)]
+    away = [run["away_per_ray"] for run in (two, four)]
+    # A visit elsewhere costs a visit besides.
+    visit = ray * (1 - shading)
+    elsewhere = max((more[1] - more[0]) / (away[1] - away[0]) - visit, 0.0)
     return model.Machine(cores=rates["cores"], shade_seconds=ray * shading,
-                         visit_seconds=ray * (1 - shading), batch_seconds=0.0,
-                         # A visit elsewhere costs a visit besides.
-                         away_seconds=(two["cpu"] - alone["cpu"]) / away - ray * (1 - shading),
+                         visit_seconds=visit, batch_seconds=0.0, away_seconds=elsewhere,
+                         route_seconds=max(more[0] - away[0] * (visit + elsewhere), 0.0),
                          message_seconds=5e-4)  # threads sleep between looking for messages
 
 
@@ -93,8 +97,9 @@ def check(arguments):
     rates = json.loads(pathlib.Path(arguments.rates).read_text())
     machine = fitted(rates)
     print(f"{rates['scene']}, {rates['size']}, {rates['cores']} cores: a ray's shading "
-          f"{machine.shade_seconds * 1e6:.2f} us, a visit {machine.visit_seconds * 1e6:.2f} us, "
-          f"and {machine.away_seconds * 1e6:.2f} us more elsewhere")
+          f"{machine.shade_seconds * 1e6:.2f} us, where it goes {machine.route_seconds * 1e6:.2f}, "
+          f"a visit {machine.visit_seconds * 1e6:.2f}, and {machine.away_seconds * 1e6:.2f} more "
+          "elsewhere")
     print("| ranks | visits elsewhere a ray | busiest share | CPU s | simulated | off | "
           "measured s | simulated s | off |")
     print("|---:|---:|---:|---:|---:|---:|---:|---:|---:|")
@@ -143,7 +148,8 @@ def predict(arguments):
                                      message_seconds=2e-6,
                                      # Loops of home and server run on all cores.
                                      away_seconds=machine.away_seconds / 16,
-                                     shade_seconds=machine.shade_seconds / 16)
+                                     shade_seconds=machine.shade_seconds / 16,
+                                     route_seconds=machine.route_seconds / 16)
             away = away_at(rates, ranks)
             seconds, _, limit = model.simulate(on, model.Job(ranks, rays, away, imbalance, read))
             print(f"| {triangles:.0e} | {ranks} | {away:.1f} | {seconds:.3f} | "
