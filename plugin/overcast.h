@@ -696,8 +696,8 @@ typedef struct ovc_api {
     ovc_result (*save_streamed)(ovc_device device, const ovc_scene_config* config, const ovc_streamed_scene* scene);
 
     /* For a host that owns its process and draws nothing by OpenGL itself: sets the environment variables by which Mesa's
-     * software renderer is fastest, should that become the device, for scenes that ask for this kernel. They are
-     * LP_NATIVE_VECTOR_WIDTH, where the CPU has vectors of 512 bits, and MESA_SHADER_CACHE_DIR or MESA_SHADER_CACHE_DISABLE with it.
+     * software renderer uses vectors of 512 bits where the CPU has them, should that become the device, for scenes that ask for
+     * this kernel: LP_NATIVE_VECTOR_WIDTH, and MESA_SHADER_CACHE_DIR or MESA_SHADER_CACHE_DISABLE with it.
      * What the user has set stays. Call it before other threads read the environment. At that width llvmpipe (22.3) crashes on
      * fragment shaders, the host's own too. OVC_ERROR_INVALID_STATE where a device was listed or opened before: the renderer no
      * longer looks. */

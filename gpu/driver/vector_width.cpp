@@ -65,9 +65,8 @@ std::optional<std::string> advice_on_vectors(const std::string& renderer,
     if (!is_narrow || !has_avx512 || variable(kWidth))
         return std::nullopt;
     return "llvmpipe compiles kernels for vectors of 256 bits, and this CPU has 512, at which "
-           "calls "
-           "are 1.1 to 1.3 times as fast: call prepare_process() before the first device, or set "
-           "LP_NATIVE_VECTOR_WIDTH=512";
+           "calls are up to 1.3 times as fast on some CPUs: call prepare_process() before the "
+           "first device, or set LP_NATIVE_VECTOR_WIDTH=512";
 }
 
 std::optional<std::string> advice_on_vectors(const std::string& renderer) {

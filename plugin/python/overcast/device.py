@@ -56,7 +56,7 @@ def devices() -> list[DeviceInfo]:
 
 
 def prepare_process() -> None:
-    """Makes Mesa's software renderer as fast as it can be, should that become the device.
+    """Lets Mesa's software renderer use vectors of 512 bits where the CPU has them.
 
     For programs that draw nothing by OpenGL themselves. Sets environment variables of the process
     (LP_NATIVE_VECTOR_WIDTH, and one for Mesa's cache) unless you have set the first; call it before
