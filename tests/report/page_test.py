@@ -203,6 +203,23 @@ class Page(unittest.TestCase):
         self.assertEqual(round(tree["scoreboard"]["exact"]["median"]), 7)
         self.assertIn("seven are wrong", text)
 
+    def test_names_the_bars_that_do_not_hold(self):
+        def add(document):
+            bars = [{"line": f"call of {name}", "measured": 0.7, "low": 0.6, "high": 0.8,
+                     "at_least": 0.85, "better": better, "verdict": verdict}
+                    for name, better, verdict in (("one", "more", "failed"),
+                                                  ("two", "less", "passed"),
+                                                  ("three", "less", "too noisy"),
+                                                  ("four", "more", "skipped"))]
+            document["runs"].append({**document["runs"][0], "key": "bars",
+                                     "result": {"bars": bars}})
+        self.change("programs", add)
+        text, tree = self.make()
+        self.assertEqual([bar["verdict"] for bar in tree["error"]["bars"]],
+                         ["misses", "holds", "too noisy"])
+        self.assertEqual([f"call of {name}" in text for name in ("one", "two", "three", "four")],
+                         [True, False, True, False])
+
     def test_marks_what_was_noisy(self):
         def set_quiet(quiet):
             def change(document):

@@ -122,6 +122,14 @@ def shapes_of(runs):
     return rows
 
 
+def bars_of(runs):
+    """The lines of `overcast bench --bars`: what each promises, and what was measured."""
+    verdicts = {"passed": "holds", "failed": "misses"}
+    return [{**{key: bar[key] for key in ("line", "measured", "low", "high", "better")},
+             "bar": bar["at_least"], "verdict": verdicts.get(bar["verdict"], bar["verdict"])}
+            for bar in (runs.result("bars") or {}).get("bars", []) if bar["verdict"] != "skipped"]
+
+
 def error_figures(documents):
     runs = data.Runs(documents.get("error"))
     scenes = bench_scenes(runs)
@@ -137,7 +145,8 @@ def error_figures(documents):
             "peer_wins": comparisons - wins,
             "our_errors": sum(n * (o["tied"] + o["wrong"] + o["leaked"]) / 1e6 for n, o in ours),
             "budget": budget_of(runs), "pictures": pictures_of(data.Runs(documents.get("samples"))),
-            "shapes": shapes_of(data.Runs(documents.get("tessellation")))}
+            "shapes": shapes_of(data.Runs(documents.get("tessellation"))),
+            "bars": bars_of(data.Runs(documents.get("programs")))}
 
 
 def call_panel(name, title, workload, value, label, floor):
@@ -198,6 +207,20 @@ def error_panels(figures):
     return panels
 
 
+def bars_table(f, bars):
+    table = Table("Promises of speed that do not hold, of those of overcast bench --bars",
+                  ["line", "measured", "from", "to", "promised", "verdict"], [])
+    for i, bar in enumerate(bars):
+        if bar["verdict"] == "holds":
+            continue
+        at = ("error", "bars", i)
+        table.rows.append([bar["line"], f.n(*at, "measured"), f.n(*at, "low"), f.n(*at, "high"),
+                           words(["at least " if bar["better"] == "more" else "at most ",
+                                  f.n(*at, "bar")]),
+                           bar["verdict"]])
+    return table
+
+
 def error_section(f):
     figures = f.at("error")
     calls = Table("Calls: ours and the fastest peer, in its best setting", [
@@ -217,6 +240,8 @@ def error_section(f):
                 row += ["none"] + ["–"] * 8
             calls.rows.append(row)
     tables = [calls]
+    if figures["bars"]:
+        tables.append(bars_table(f, figures["bars"]))
     for p, scene in enumerate(figures["pictures"]):
         table = Table(f"Pictures of {scene['scene']} by samples a pixel",
                       ["program", "samples", "seconds", "RMS error"], [])

@@ -143,9 +143,11 @@ std::vector<ReportRun> programs_runs(const ReportPlan& plan) {
           "3", "--json", "{}/programs.json"},
          "programs.json",
          plan.quick ? 12.0 : 30.0}};
-    if (!plan.quick)
+    if (!plan.quick) {
         runs.push_back(
             {"bars", {"bench", mesh, "--bars", "--json", "{}/bars.json"}, "bars.json", 240});
+        runs.back().judges = true;
+    }
     return runs;
 }
 

@@ -37,6 +37,7 @@ struct ReportRun {
     Words variables = {};     // of its environment: "NAME=VALUE"
     std::string picture = {}; // a picture that it writes as well: .png, or .exr with leaf numbers
     bool may_refuse = false;  // its error is a result as well: {"refused": "..."}
+    bool judges = false;      // exit code 1 is a verdict, which its result explains
     bool timed = true;        // whether other programs on the machine disturb its result
 };
 

@@ -195,7 +195,7 @@ private:
         }
         if (end.too_long || !attempt.result.is_object())
             attempt = failed(end);
-        else if (end.exit_code != 0)
+        else if (end.exit_code != 0 && !run.judges)
             attempt.trouble = end.said;
         if (run.picture.empty() || !attempt.trouble.is_null())
             return;

@@ -115,6 +115,14 @@ TEST_F(RunExperiments, TakeFiguresOfARunThatFoundSomethingWrongAndRunItAgain) {
     EXPECT_EQ(times("wrong"), 2u);
 }
 
+TEST_F(RunExperiments, TakeAVerdictForAResult) {
+    add("judges", "echo '{\"n\": 5}' > $0/result.json; echo a line fails >&2; exit 1").judges =
+        true;
+    add("silent", "echo no figures >&2; exit 1").judges = true;
+    EXPECT_THAT(run(), testing::ElementsAre("scripts, silent: no figures"));
+    EXPECT_EQ(file()["runs"][0]["result"]["n"], 5);
+}
+
 TEST_F(RunExperiments, ForgetWhatWasStopped) {
     add("first", "echo '{\"n\": 1}' > $0/result.json");
     add("second", "echo '{\"n\": 2}' > $0/result.json; exec sleep 50");
