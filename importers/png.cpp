@@ -5,6 +5,7 @@
 
 #include <png.h>
 
+#include <algorithm>
 #include <cassert>
 #include <csetjmp>
 #include <cstring>
@@ -102,12 +103,15 @@ void decode(Reading& r) {
     }
 }
 
+constexpr uint32_t kRowsAtOnce = 64;
+
 /// Everything that lives while libpng may jump out of encode().
 struct Writing {
     png_structp png = nullptr;
     png_infop info = nullptr;
     std::string error;
     std::string bytes;
+    std::vector<uint16_t> samples; // of the next rows
     std::vector<uint8_t> row;
 
     ~Writing() { png_destroy_write_struct(&png, &info); }
@@ -129,7 +133,7 @@ void say_software(const Writing& w, const std::string& software) {
     png_set_text(w.png, w.info, &text, 1);
 }
 
-void encode(Writing& w, const PngPixels& pixels, const std::string& software) {
+void encode(Writing& w, const PngRows& pixels, const std::string& software) {
     png_set_write_fn(w.png, &w, write_bytes, flush_nothing);
     png_set_IHDR(w.png, w.info, pixels.width, pixels.height, pixels.bits, PNG_COLOR_TYPE_RGB,
                  PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
@@ -143,7 +147,11 @@ void encode(Writing& w, const PngPixels& pixels, const std::string& software) {
     const size_t sample_bytes = size_t(pixels.bits) / 8;
     w.row.resize(samples * sample_bytes);
     for (uint32_t y = 0; y < pixels.height; ++y) {
-        const uint16_t* from = pixels.samples.data() + y * samples;
+        if (y % kRowsAtOnce == 0) {
+            w.samples.resize(samples * std::min(kRowsAtOnce, pixels.height - y));
+            pixels.read(y, w.samples);
+        }
+        const uint16_t* from = w.samples.data() + y % kRowsAtOnce * samples;
         for (size_t i = 0; i < samples; ++i)
             for (size_t byte = 0; byte < sample_bytes; ++byte) // high byte first
                 w.row[i * sample_bytes + byte] = uint8_t(from[i] >> (8 - 8 * byte));
@@ -169,8 +177,16 @@ Result<Picture> read_png(std::span<const uint8_t> file) {
 }
 
 Result<std::string> write_png(const PngPixels& pixels, const std::string& software) {
-    assert(pixels.bits == 8 || pixels.bits == 16);
     assert(pixels.samples.size() == size_t(pixels.width) * pixels.height * 3);
+    const auto read = [&](uint32_t first, std::span<uint16_t> samples) {
+        const size_t before = size_t(first) * pixels.width * 3;
+        std::ranges::copy(pixels.samples.subspan(before, samples.size()), samples.begin());
+    };
+    return write_png(PngRows{pixels.width, pixels.height, pixels.bits, read}, software);
+}
+
+Result<std::string> write_png(const PngRows& pixels, const std::string& software) {
+    assert(pixels.bits == 8 || pixels.bits == 16);
     Writing writing;
     writing.png =
         png_create_write_struct(PNG_LIBPNG_VER_STRING, &writing.error, on_error, on_warning);

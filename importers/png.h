@@ -7,6 +7,7 @@
 #include "importers/picture.h"
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 
@@ -25,8 +26,18 @@ struct PngPixels {
     std::span<const uint16_t> samples; // 3 x width x height
 };
 
+/// The same for pictures that are made while they are written, some rows at once.
+struct PngRows {
+    uint32_t width = 0;
+    uint32_t height = 0;
+    int bits = 8; // as in PngPixels
+    /// Writes the samples of the rows from `first` on: 3 x width x the number of rows.
+    std::function<void(uint32_t first, std::span<uint16_t> samples)> read;
+};
+
 /// Returns the bytes of a file, the same for the same pixels. The file says that `software` made
 /// it.
 Result<std::string> write_png(const PngPixels& pixels, const std::string& software);
+Result<std::string> write_png(const PngRows& rows, const std::string& software);
 
 } // namespace ovc

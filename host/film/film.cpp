@@ -80,14 +80,13 @@ dvec3 Film::mean(uint32_t pixel) const {
     return scale * dvec3(double(sum[0]), double(sum[1]), double(sum[2]));
 }
 
-Image Film::image() const {
-    Image image(width_, height_);
-    parallel_for(image.pixels.size(), 4096, [&](size_t first, size_t last) {
-        for (size_t i = first; i < last; ++i)
-            if (done(uint32_t(i)))
-                image.pixels[i] = vec4(vec3(mean(uint32_t(i))), 1);
-    });
-    return image;
+PixelSource Film::pixels() const {
+    return {width_, height_, [this](size_t first, std::span<vec4> pixels) {
+                for (size_t i = 0; i < pixels.size(); ++i) {
+                    const auto pixel = uint32_t(first + i);
+                    pixels[i] = done(pixel) ? vec4(vec3(mean(pixel)), 1) : vec4(0);
+                }
+            }};
 }
 
 } // namespace ovc

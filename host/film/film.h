@@ -3,7 +3,7 @@
 // to the same bits. A pixel is done when no ray of it is under way.
 #pragma once
 
-#include "core/file/image.h"
+#include "core/file/pixel_source.h"
 #include "core/system/system_pages.h"
 
 #include <array>
@@ -56,8 +56,11 @@ public:
 
     /// Returns the mean light of a pixel that is done.
     dvec3 mean(uint32_t pixel) const;
-    /// Returns the picture. Pixels that are not done are black, with alpha 0.
-    Image image() const;
+    /// Returns the picture, which the film outlives. Pixels that are not done are black, with
+    /// alpha 0.
+    PixelSource pixels() const;
+    /// Returns the same as an image.
+    Image image() const { return image_of(pixels()); }
 
 private:
     static constexpr uint32_t kTileBits = 8, kTilePixels = 1 << kTileBits;

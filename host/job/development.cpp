@@ -8,27 +8,34 @@
 
 namespace ovc {
 
-Image light_of(const Film& film, double gamma) {
-    Image image = film.image();
-    if (gamma != 1)
-        to_linear(image, gamma);
-    return image;
+/// Returns the source after change(pixels).
+template <class Change>
+static PixelSource changed(const PixelSource& source, Change change) {
+    return {source.width, source.height,
+            [read = source.read, change](size_t first, std::span<vec4> pixels) {
+                read(first, pixels);
+                change(pixels);
+            }};
 }
 
-DevelopedImage develop(Image light, const Development& how) {
-    DevelopedImage developed{std::move(light), std::nullopt};
-    if (how.exposure) {
-        developed.stops =
-            how.exposure->is_automatic ? automatic_stops(developed.light) : how.exposure->stops;
-        expose(developed.light, *developed.stops);
-    }
-    return developed;
+PixelSource light_of(const Film& film, double gamma) {
+    const PixelSource light = film.pixels();
+    return gamma == 1 ? light
+                      : changed(light, [=](std::span<vec4> some) { to_linear(some, gamma); });
 }
 
-Image for_display(const DevelopedImage& developed, const Development& how) {
-    Image image = developed.light;
-    map_tones(image, how.tone_map);
-    return image;
+DevelopedImage develop(PixelSource light, const Development& how) {
+    if (!how.exposure)
+        return {std::move(light), std::nullopt};
+    const double stops = how.exposure->is_automatic ? automatic_stops(light) : how.exposure->stops;
+    return {changed(light, [=](std::span<vec4> some) { expose(some, stops); }), stops};
+}
+
+PixelSource for_display(const DevelopedImage& developed, const Development& how) {
+    const ToneMap curve = how.tone_map;
+    return curve == ToneMap::None
+               ? developed.light
+               : changed(developed.light, [=](std::span<vec4> some) { map_tones(some, curve); });
 }
 
 Result<Done> save_picture(const DevelopedImage& developed, std::span<const std::string> files,
@@ -36,12 +43,9 @@ Result<Done> save_picture(const DevelopedImage& developed, std::span<const std::
     if (developed.stops)
         contents.notes.push_back({"overcast:exposure", fmt::format("{:.4g}", *developed.stops)});
     Result<Done> all = Done{};
-    Image tones;
     for (const std::string& file : files) {
-        const bool is_mapped = how.tone_map != ToneMap::None && !takes_layers(file);
-        if (is_mapped && tones.pixels.empty())
-            tones = for_display(developed, how);
-        const Result<Done> saved = save_image(is_mapped ? tones : developed.light, file, contents);
+        const Result<Done> saved = save_image(
+            takes_layers(file) ? developed.light : for_display(developed, how), file, contents);
         if (!saved && all)
             all = saved;
     }

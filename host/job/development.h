@@ -2,7 +2,7 @@
 // A picture is made of the light on a film, and written to files: linear, or for a display.
 #pragma once
 
-#include "core/file/image.h"
+#include "core/file/pixel_source.h"
 #include "core/result.h"
 #include "host/film/film.h"
 #include "host/output/output.h"
@@ -21,18 +21,18 @@ struct Development {
 };
 
 struct DevelopedImage {
-    Image light;                 // linear, after its exposure
+    PixelSource light;           // linear, after its exposure
     std::optional<double> stops; // of that exposure, where there is one
 };
 
-/// Returns the linear light of a film. gamma: of the scene (Scene::gamma).
-Image light_of(const Film& film, double gamma);
+/// Returns the linear light of a film, which outlives it. gamma: of the scene (Scene::gamma).
+PixelSource light_of(const Film& film, double gamma);
 
 /// Returns the picture that is made of linear light.
-DevelopedImage develop(Image light, const Development& how);
+DevelopedImage develop(PixelSource light, const Development& how);
 
 /// Returns what a display shows of it: linear light again.
-Image for_display(const DevelopedImage& developed, const Development& how);
+PixelSource for_display(const DevelopedImage& developed, const Development& how);
 
 /// Writes the picture to each file: its light to formats that hold layers, and tones for a display
 /// to others. contents: besides the exposure, which it notes. It tries every file; on errors it

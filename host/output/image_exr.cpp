@@ -22,6 +22,15 @@
 
 namespace ovc {
 
+/// Many times the rows that OpenEXR compresses together.
+static constexpr uint32_t kRowsAtOnce = 64;
+
+static constexpr const char* kColors[] = {"R", "G", "B", "A"};
+
+static Imf::PixelType type_of(const Layer& layer) {
+    return layer.type == Layer::Type::Float ? Imf::FLOAT : Imf::UINT;
+}
+
 /// A file in memory, because OpenEXR goes back to fill in a table, and a pipe cannot.
 class MemoryStream final : public Imf::OStream {
 public:
@@ -40,36 +49,51 @@ private:
     size_t at_ = 0;
 };
 
-Result<std::string> encode_exr(const Image& image, const FileContents& contents) {
+/// Returns a header that has the picture's channels and the layers.
+static Imf::Header header_of(const PixelSource& image, const FileContents& contents) {
+    Imf::Header header(int(image.width), int(image.height));
+    header.compression() = Imf::ZIP_COMPRESSION;
+    for (const FileNote& note : contents.notes)
+        header.insert(note.name, Imf::StringAttribute(note.text));
+    for (const char* name : kColors)
+        header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+    for (const Layer& layer : contents.layers) {
+        assert(layer.values.size() == image.size());
+        header.channels().insert(layer.name, Imf::Channel(type_of(layer)));
+    }
+    return header;
+}
+
+/// Writes rows from `first` on, of which `pixels` holds the picture's.
+static void write_rows(Imf::OutputFile& file, uint32_t first, std::vector<vec4>& pixels,
+                       uint32_t width, std::span<const Layer> layers) {
+    const int64_t rows = int64_t(pixels.size()) / width;
+    const Imath::V2i corner(0, int(first));
+    Imf::FrameBuffer frame;
+    for (int channel = 0; channel < 4; ++channel)
+        frame.insert(kColors[channel],
+                     Imf::Slice::Make(Imf::FLOAT, &pixels[0][channel], corner, width, rows,
+                                      sizeof(vec4), sizeof(vec4) * width));
+    for (const Layer& layer : layers)
+        frame.insert(layer.name,
+                     Imf::Slice::Make(type_of(layer), &layer.values[size_t(first) * width], corner,
+                                      width, rows, sizeof(uint32_t), sizeof(uint32_t) * width));
+    file.setFrameBuffer(frame);
+    file.writePixels(int(rows));
+}
+
+Result<std::string> encode_exr(const PixelSource& image, const FileContents& contents) {
     try {
-        Imf::Header header(int(image.width), int(image.height));
-        header.compression() = Imf::ZIP_COMPRESSION;
-        for (const FileNote& note : contents.notes)
-            header.insert(note.name, Imf::StringAttribute(note.text));
-        Imf::FrameBuffer frame;
-        for (int channel = 0; channel < 4; ++channel) {
-            const char name[] = {"RGBA"[channel], '\0'};
-            header.channels().insert(name, Imf::Channel(Imf::FLOAT));
-            // A Slice takes a writable pointer, but writing a file only reads through it.
-            char* first =
-                const_cast<char*>(reinterpret_cast<const char*>(&image.pixels[0][channel]));
-            frame.insert(name,
-                         Imf::Slice(Imf::FLOAT, first, sizeof(vec4), sizeof(vec4) * image.width));
-        }
-        for (const Layer& layer : contents.layers) {
-            assert(layer.values.size() == image.pixels.size());
-            const Imf::PixelType type = layer.type == Layer::Type::Float ? Imf::FLOAT : Imf::UINT;
-            header.channels().insert(layer.name, Imf::Channel(type));
-            char* first = const_cast<char*>(reinterpret_cast<const char*>(layer.values.data()));
-            frame.insert(layer.name,
-                         Imf::Slice(type, first, sizeof(uint32_t), sizeof(uint32_t) * image.width));
-        }
         std::string bytes;
         MemoryStream stream(bytes);
         {
-            Imf::OutputFile file(stream, header);
-            file.setFrameBuffer(frame);
-            file.writePixels(int(image.height));
+            Imf::OutputFile file(stream, header_of(image, contents));
+            for (uint32_t y = 0; y < image.height; y += kRowsAtOnce) {
+                const uint32_t rows = std::min(kRowsAtOnce, image.height - y);
+                std::vector<vec4> pixels(size_t(rows) * image.width);
+                image.read(size_t(y) * image.width, pixels);
+                write_rows(file, y, pixels, image.width, contents.layers);
+            }
         } // the destructor has written the table of lines
         return bytes;
     } catch (const std::exception& e) {
@@ -96,9 +120,7 @@ static Result<Channels> read_all(Imf::InputFile& file) {
     }
     Imf::FrameBuffer frame;
     for (Layer& layer : channels.all)
-        frame.insert(layer.name,
-                     Imf::Slice::Make(layer.type == Layer::Type::Float ? Imf::FLOAT : Imf::UINT,
-                                      layer.values.data(), window));
+        frame.insert(layer.name, Imf::Slice::Make(type_of(layer), layer.values.data(), window));
     file.setFrameBuffer(frame);
     file.readPixels(window.min.y, window.max.y);
     return channels;

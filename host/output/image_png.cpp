@@ -20,17 +20,21 @@ static uint16_t sample_of(float linear, int bits) {
     return uint16_t(std::lround(srgb_code(linear) * 255) * 257);
 }
 
-Result<std::string> encode_png(const Image& image, const FileContents& contents) {
+Result<std::string> encode_png(const PixelSource& image, const FileContents& contents) {
     assert(contents.png_bits == 8 || contents.png_bits == 16);
-    std::vector<uint16_t> samples(image.pixels.size() * 3);
-    parallel_for(image.pixels.size(), 4096, [&](size_t first, size_t last) {
-        for (size_t i = first; i < last; ++i)
-            for (int channel = 0; channel < 3; ++channel)
-                samples[i * 3 + size_t(channel)] =
-                    sample_of(image.pixels[i][channel], contents.png_bits);
-    });
+    const auto read = [&](uint32_t row, std::span<uint16_t> samples) {
+        const size_t before = size_t(row) * image.width;
+        parallel_for(samples.size() / 3, 4096, [&](size_t first, size_t last) {
+            std::vector<vec4> pixels(last - first);
+            image.read(before + first, pixels);
+            for (size_t i = first; i < last; ++i)
+                for (int channel = 0; channel < 3; ++channel)
+                    samples[i * 3 + size_t(channel)] =
+                        sample_of(pixels[i - first][channel], contents.png_bits);
+        });
+    };
     // Only the program's name goes into the file, so that the same pixels are the same file.
-    return write_png({image.width, image.height, contents.png_bits, samples},
+    return write_png(PngRows{image.width, image.height, contents.png_bits, read},
                      "overcast " + version_text());
 }
 

@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 struct ImageFormat {
     std::string_view extension;
     bool layers;
-    Result<std::string> (*encode)(const Image&, const FileContents&);
+    Result<std::string> (*encode)(const PixelSource&, const FileContents&);
 };
 
 static constexpr ImageFormat kFormats[] = {{".png", false, encode_png}, {".exr", true, encode_exr}};
@@ -61,7 +61,8 @@ bool takes_layers(const fs::path& path) {
     return format && format->layers;
 }
 
-Result<Done> save_image(const Image& image, const fs::path& path, const FileContents& contents) {
+Result<Done> save_image(const PixelSource& image, const fs::path& path,
+                        const FileContents& contents) {
     const ImageFormat* format = format_of(path);
     if (!format)
         return Error{

@@ -2,7 +2,7 @@
 // Writes images, in formats by extension, and other files. They appear whole or not at all.
 #pragma once
 
-#include "core/file/image.h"
+#include "core/file/pixel_source.h"
 #include "core/result.h"
 
 #include <filesystem>
@@ -57,14 +57,14 @@ struct FileContents {
 
 /// Writes `image` in the format of the extension. On an error the file that was at `path` stays,
 /// and nothing else remains.
-Result<Done> save_image(const Image& image, const std::filesystem::path& path,
+Result<Done> save_image(const PixelSource& image, const std::filesystem::path& path,
                         const FileContents& contents = {});
 
 /// Writes `text`; errors leave the same as those of save_image().
 Result<Done> save_text(std::string_view text, const std::filesystem::path& path);
 
 /// Each returns the bytes of a file in its format. The error does not name the file.
-Result<std::string> encode_png(const Image& image, const FileContents& contents = {});
-Result<std::string> encode_exr(const Image& image, const FileContents& contents = {});
+Result<std::string> encode_png(const PixelSource& image, const FileContents& contents = {});
+Result<std::string> encode_exr(const PixelSource& image, const FileContents& contents = {});
 
 } // namespace ovc

@@ -2,11 +2,15 @@
 // Tests that files appear whole or not at all, and that errors come before anything is rendered.
 #include "host/output/output.h"
 
+#include "host/diff/channels.h"
+
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfInputFile.h>
 #include <OpenEXR/ImfStringAttribute.h>
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <bit>
 #include <cmath>
 #include <fstream>
 #include <iterator>
@@ -101,6 +105,31 @@ TEST_F(Output, WritesBothFormatsTheSameEveryTime) {
     EXPECT_EQ(text_of(folder_ / "a.png").substr(1, 3), "PNG");
     EXPECT_EQ(text_of(folder_ / "a.exr").substr(0, 4), "\x76\x2f\x31\x01");
     EXPECT_EQ(file_count(), 2u);
+}
+
+TEST_F(Output, NeedsAFewRowsAtOnce) {
+    constexpr uint32_t kWidth = 7, kHeight = 203;
+    Image image(kWidth, kHeight);
+    for (size_t i = 0; i < image.pixels.size(); ++i)
+        image.pixels[i] = vec4(float(i), 1 / float(i + 1), 0.5f, 1);
+    size_t most = 0, all = 0; // of an image that small a thread asks alone
+    const PixelSource source(kWidth, kHeight, [&](size_t first, std::span<vec4> pixels) {
+        std::copy_n(image.pixels.begin() + ptrdiff_t(first), pixels.size(), pixels.begin());
+        most = std::max(most, pixels.size());
+        all += pixels.size();
+    });
+    EXPECT_EQ(*encode_png(source), *encode_png(image));
+    ASSERT_TRUE(save_image(source, folder_ / "a.exr"));
+    EXPECT_EQ(all, 2 * image.pixels.size());
+    EXPECT_LE(most, kWidth * kHeight / 3);
+    const Result<Channels> read = read_channels(folder_ / "a.exr");
+    ASSERT_TRUE(read);
+    const Layer *red = read->find("R"), *green = read->find("G");
+    ASSERT_TRUE(red && green);
+    for (size_t i = 0; i < image.pixels.size(); ++i) {
+        EXPECT_EQ(std::bit_cast<float>(red->values[i]), image.pixels[i].r);
+        EXPECT_EQ(std::bit_cast<float>(green->values[i]), image.pixels[i].g);
+    }
 }
 
 TEST_F(Output, AnExrFileSaysHowItWasMade) {

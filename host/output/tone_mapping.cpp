@@ -3,14 +3,14 @@
 #include "host/output/tone_mapping.h"
 
 #include "core/scene.h"
-#include "core/system/parallel.h"
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace ovc {
 
-static constexpr size_t kToneGrain = 4096; // pixels a task
+static constexpr size_t kPixelsAtOnce = 4096;
 /// The reflectance of a photographer's grey card.
 static constexpr double kMiddleGrey = 0.18;
 
@@ -18,26 +18,31 @@ static double luminance_of(const vec4& pixel) {
     return 0.2126 * double(pixel.r) + 0.7152 * double(pixel.g) + 0.0722 * double(pixel.b);
 }
 
-double automatic_stops(const Image& image) {
+double automatic_stops(const PixelSource& image) {
     double sum = 0;
     uint64_t count = 0;
-    for (const vec4& pixel : image.pixels)
-        if (const double light = luminance_of(pixel); light > 0 && std::isfinite(light)) {
-            sum += std::log2(light);
-            ++count;
-        }
+    std::vector<vec4> pixels(kPixelsAtOnce);
+    for (size_t first = 0; first < image.size(); first += pixels.size()) {
+        pixels.resize(std::min(kPixelsAtOnce, image.size() - first));
+        image.read(first, pixels);
+        for (const vec4& pixel : pixels)
+            if (const double light = luminance_of(pixel); light > 0 && std::isfinite(light)) {
+                sum += std::log2(light);
+                ++count;
+            }
+    }
     return count > 0 ? std::log2(kMiddleGrey) - sum / double(count) : 0;
 }
 
-void to_linear(Image& image, double gamma) {
-    for (vec4& pixel : image.pixels)
+void to_linear(std::span<vec4> pixels, double gamma) {
+    for (vec4& pixel : pixels)
         for (int i = 0; i < 3; ++i)
             pixel[i] = linear_light(pixel[i], gamma);
 }
 
-void expose(Image& image, double stops) {
+void expose(std::span<vec4> pixels, double stops) {
     const float factor = float(std::exp2(stops));
-    for (vec4& pixel : image.pixels)
+    for (vec4& pixel : pixels)
         pixel = vec4(factor * vec3(pixel), pixel.a);
 }
 
@@ -67,14 +72,10 @@ float tone_mapped(float light, ToneMap curve) {
     return light;
 }
 
-void map_tones(Image& image, ToneMap curve) {
-    if (curve == ToneMap::None)
-        return;
-    parallel_for(image.pixels.size(), kToneGrain, [&](size_t first, size_t last) {
-        for (size_t i = first; i < last; ++i)
-            for (int channel = 0; channel < 3; ++channel)
-                image.pixels[i][channel] = tone_mapped(image.pixels[i][channel], curve);
-    });
+void map_tones(std::span<vec4> pixels, ToneMap curve) {
+    for (vec4& pixel : pixels)
+        for (int channel = 0; channel < 3; ++channel)
+            pixel[channel] = tone_mapped(pixel[channel], curve);
 }
 
 } // namespace ovc

@@ -2,10 +2,11 @@
 // Exposure scales a picture's light, and tone mapping fits it into the range of a display.
 #pragma once
 
-#include "core/file/image.h"
+#include "core/file/pixel_source.h"
 
 #include <cstdint>
 #include <optional>
+#include <span>
 
 namespace ovc {
 
@@ -24,19 +25,19 @@ enum class ToneMap : uint8_t {
 /// Returns the stops that bring the log-average of the image's luminances to 0.18, a middle grey;
 /// 0 where nothing in it is bright. Pixels that are black or not done do not count.
 /// Source: Reinhard et al. 2002, "Photographic Tone Reproduction for Digital Images", formula 1.
-double automatic_stops(const Image& image);
+double automatic_stops(const PixelSource& image);
 
 /// Converts the light of a scene of that gamma (Scene::gamma) to linear light.
-void to_linear(Image& image, double gamma);
+void to_linear(std::span<vec4> pixels, double gamma);
 
-/// Doubles the image's light so many times.
-void expose(Image& image, double stops);
+/// Doubles the light of pixels so many times.
+void expose(std::span<vec4> pixels, double stops);
 
 /// Returns light, at least 0, as a curve maps it to a display's linear light, at most 1 for Filmic
 /// and Aces.
 float tone_mapped(float light, ToneMap curve);
 
-/// Maps each channel of the image by itself.
-void map_tones(Image& image, ToneMap curve);
+/// Maps each channel by itself.
+void map_tones(std::span<vec4> pixels, ToneMap curve);
 
 } // namespace ovc

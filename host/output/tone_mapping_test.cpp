@@ -41,9 +41,9 @@ TEST(ToneMapping, CurvesRiseAndStayWithinADisplaysRange) {
 TEST(ToneMapping, AStopDoublesLightAndLeavesAlpha) {
     Image image(1, 1);
     image.pixels[0] = {0.1f, 0.2f, 3, 0.5f};
-    expose(image, 1);
+    expose(image.pixels, 1);
     EXPECT_EQ(image.pixels[0], vec4(0.2f, 0.4f, 6, 0.5f));
-    expose(image, -3);
+    expose(image.pixels, -3);
     EXPECT_EQ(image.pixels[0], vec4(0.025f, 0.05f, 0.75f, 0.5f));
 }
 

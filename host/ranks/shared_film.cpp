@@ -173,21 +173,26 @@ private:
     /// Brings the pixels of all ranks to rank 0, and all of them to all ranks where these want
     /// them. complete: whether those of this rank are. They go in parts, before each of which
     /// rank 0 has taken the one before, so that it needs room for a part, however large the film.
+    /// The first part has no pixels: when it is over, all ranks have traced theirs.
     Result<Done> exchange(uint32_t round, bool complete) {
-        constexpr size_t kPartPixels = size_t(1) << 18; // of all ranks
+        constexpr size_t kPartPixels = size_t(1) << 16; // of all ranks
         const size_t part = std::max<size_t>(kPartPixels / ranks_.count(), 1);
         const auto pixels = pixels_of_ranks(round);
         const size_t max = max_pixels_of(round);
-        for (size_t first = 0; first < max; first += part) {
+        for (size_t first = 0, count = 0; first < max; first += count, count = part) {
             std::vector<std::span<const uint32_t>> parts;
             for (const std::vector<uint32_t>& all : pixels) {
                 const size_t from = std::min(first, all.size());
-                parts.push_back(std::span(all).subspan(from, std::min(part, all.size() - from)));
+                parts.push_back(std::span(all).subspan(from, std::min(count, all.size() - from)));
             }
             if (const Result<Done> taken = gather_part(parts, complete); !taken)
                 return stop(taken.error());
             if (const Result<Done> told = tell_of_first({}, complete); !told)
                 return stop(told.error());
+            if (count == 0 && round + 1 == rounds_ && options_.traced) {
+                options_.traced();
+                malloc_trim(0);
+            }
         }
         if (!options_.to_all || !report_.complete)
             return Done{};

@@ -170,7 +170,7 @@ private:
             return options_.exposure->stops;
         Image image = estimate_.image(film_.width(), film_.height());
         if (gamma_ != 1)
-            to_linear(image, gamma_);
+            to_linear(image.pixels, gamma_);
         return automatic_stops(image);
     }
 

@@ -199,6 +199,11 @@ public:
         return render_shared(*options_.ranks, film, shared, part, observe);
     }
 
+    /// Returns what is done where no rank has a ray to trace any more.
+    std::function<void()> after_last_ray() const {
+        return options_.purges ? std::function<void()>([this] { backend_.purge(); }) : nullptr;
+    }
+
     /// Renders a pass of progressive rendering.
     Result<RenderReport> render(const Pass& pass, const RenderObserver& observe, Film& film) {
         CameraSampling sampling = sampling_;
@@ -265,7 +270,10 @@ static Result<RenderReport> render_by(Tracing& tracing, const RenderOptions& opt
             },
             observe, film);
     if (!options.antialias || film.pixels_done() > 0)
-        return tracing.render(film, {.keep = options.keep, .keep_seconds = options.keep_seconds},
+        return tracing.render(film,
+                              {.traced = tracing.after_last_ray(),
+                               .keep = options.keep,
+                               .keep_seconds = options.keep_seconds},
                               observe);
     const auto render_points = [&](std::span<const dvec2> points, const RenderObserver& watch,
                                    Film& to) {

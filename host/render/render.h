@@ -66,6 +66,8 @@ struct RenderOptions {
     /// Keeps the film so far. Rank 0 calls it about so often, in case that it ends by force.
     std::function<Result<Done>(const Film&)> keep{};
     double keep_seconds = 30;
+    /// Ranks purge the backend once all of them have traced their part of the picture.
+    bool purges = false;
 };
 
 struct RayCounts {

@@ -9,34 +9,45 @@
 #include "host/shade/shading.h"
 
 #include <algorithm>
+#include <cassert>
 
 namespace ovc {
 namespace {
 
 constexpr size_t kCopyGrain = 1024; // rays a task that only copies
 
-/// A ray in the stream, until its answer comes.
-template <class Purpose>
-struct UnderWay {
-    Ray ray;
-    Purpose purpose;
-};
+/// Makes room for so many items, and for not many more: rays under way are most of the memory that
+/// rendering takes.
+template <class T>
+void grow(std::vector<T>& items, size_t count) {
+    if (count > items.capacity())
+        items.reserve(count + count / 4);
+    if (count > items.size())
+        items.resize(count);
+}
 
-/// The rays of one kind in the stream. A token holds the kind above and the ray's slot below.
+/// The rays of one kind in the stream, until their answers come. A token holds the kind above and
+/// the ray's slot below.
 template <class Purpose>
 class RaysUnderWay {
 public:
-    RaysUnderWay(uint64_t kind, bool any_hit, const Sight& sight)
-        : kind_(kind << 32), any_hit_(any_hit), sight_(sight) {}
+    /// keeps_rays: whether the rays themselves are needed when their answers come.
+    RaysUnderWay(uint64_t kind, bool any_hit, bool keeps_rays, const Sight& sight)
+        : kind_(kind << 32), any_hit_(any_hit), keeps_rays_(keeps_rays), sight_(sight) {}
 
     bool has(uint64_t token) const { return (token & kKindBits) == kind_; }
 
     void push(RayStream& stream, const RayList<Purpose>& rays) {
         const std::vector<uint32_t> taken = slots_.take(rays.size());
+        grow(purposes_, slots_.end());
+        if (keeps_rays_)
+            grow(rays_, slots_.end());
         tokens_.resize(rays.size());
         parallel_for(rays.size(), kCopyGrain, [&](size_t first, size_t last) {
             for (size_t i = first; i < last; ++i) {
-                slots_[taken[i]] = {rays.rays[i], rays.purposes[i]};
+                if (keeps_rays_)
+                    rays_[taken[i]] = rays.rays[i];
+                purposes_[taken[i]] = rays.purposes[i];
                 tokens_[i] = kind_ | taken[i];
             }
         });
@@ -44,15 +55,22 @@ public:
         stream.push({any_hit_, rays.rays, rays.skip, tokens_, {}, sieves.masks, sieves.filters});
     }
 
-    /// Writes the rays that these tokens stand for, and frees their slots.
+    /// Writes the rays that these tokens stand for, which are kept, and frees their slots.
     void take(std::span<const uint64_t> tokens, RayList<Purpose>& rays) {
+        assert(keeps_rays_ || tokens.empty());
         rays.resize(tokens.size());
         parallel_for(tokens.size(), kCopyGrain, [&](size_t first, size_t last) {
-            for (size_t i = first; i < last; ++i) {
-                const UnderWay<Purpose>& ray = slots_[uint32_t(tokens[i])];
-                rays.rays[i] = ray.ray;
-                rays.purposes[i] = ray.purpose;
-            }
+            for (size_t i = first; i < last; ++i)
+                rays.rays[i] = rays_[uint32_t(tokens[i])];
+        });
+        take(tokens, rays.purposes);
+    }
+    /// The same of their purposes alone.
+    void take(std::span<const uint64_t> tokens, std::vector<Purpose>& purposes) {
+        purposes.resize(tokens.size());
+        parallel_for(tokens.size(), kCopyGrain, [&](size_t first, size_t last) {
+            for (size_t i = first; i < last; ++i)
+                purposes[i] = purposes_[uint32_t(tokens[i])];
         });
         for (const uint64_t token : tokens)
             slots_.give_back(uint32_t(token));
@@ -62,9 +80,11 @@ private:
     static constexpr uint64_t kKindBits = ~uint64_t(0) << 32;
 
     const uint64_t kind_;
-    const bool any_hit_;
+    const bool any_hit_, keeps_rays_;
     const Sight& sight_;
-    Slots<UnderWay<Purpose>> slots_;
+    Slots slots_;
+    std::vector<Ray> rays_; // of each slot, where they are kept
+    std::vector<Purpose> purposes_;
     std::vector<uint64_t> tokens_;
     std::vector<uint32_t> masks_;
 };
@@ -77,8 +97,9 @@ public:
           observe_(observe),
           film_(film),
           shading_(integrator, lights, film),
-          paths_(0, /* any_hit= */ false, sight),
-          shadows_(1, /* any_hit= */ !integrator.light_may_pass(), sight) {}
+          paths_(0, /* any_hit= */ false, /* keeps_rays= */ true, sight),
+          shadows_(1, /* any_hit= */ !integrator.light_may_pass(),
+                   /* keeps_rays= */ integrator.light_may_pass(), sight) {}
 
     Result<RenderReport> render(Backend& backend) {
         const Stopwatch watch;
@@ -115,7 +136,7 @@ public:
     bool occlusions(RayStream&, std::span<const uint64_t> tokens,
                     std::span<const uint8_t> occluded) override {
         const Stopwatch watch;
-        shadows_.take(tokens, answered_shadows_);
+        shadows_.take(tokens, answered_shadows_.purposes);
         shading_.arrive(answered_shadows_.purposes, occluded);
         return go_on(watch);
     }

@@ -1,37 +1,33 @@
 // SPDX-License-Identifier: Apache-2.0
-// Slots keeps items under small numbers while they are needed, and uses the numbers again.
+// Slots hands out small numbers for as long as they are needed, and uses them again.
 #pragma once
 
-#include <cassert>
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
 namespace ovc {
 
-template <class T>
 class Slots {
 public:
-    /// Returns the numbers of `count` free slots, whose contents are unspecified.
+    /// Returns `count` numbers that are free, all of them below end().
     std::vector<uint32_t> take(size_t count) {
         const size_t reused = std::min(count, free_.size());
         std::vector<uint32_t> taken(free_.end() - ptrdiff_t(reused), free_.end());
         free_.resize(free_.size() - reused);
         for (size_t i = reused; i < count; ++i)
-            taken.push_back(uint32_t(items_.size() + i - reused));
-        items_.resize(items_.size() + count - reused);
+            taken.push_back(end_++);
         return taken;
     }
     void give_back(uint32_t slot) { free_.push_back(slot); }
 
-    T& operator[](uint32_t slot) {
-        assert(slot < items_.size());
-        return items_[slot];
-    }
-    size_t in_use() const { return items_.size() - free_.size(); }
+    /// The number behind the largest that was ever taken.
+    uint32_t end() const { return end_; }
+    size_t in_use() const { return end_ - free_.size(); }
 
 private:
-    std::vector<T> items_;
+    uint32_t end_ = 0;
     std::vector<uint32_t> free_;
 };
 
