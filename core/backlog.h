@@ -4,6 +4,7 @@
 #pragma once
 
 #include "core/exclusions.h"
+#include "core/reserve_sparingly.h"
 #include "core/stream.h"
 
 #include <algorithm>
@@ -17,6 +18,10 @@ public:
     void push(const StreamRays& pushed) {
         assert(pushed.tokens.size() == pushed.rays.size());
         assert(pushed.skip.empty() || pushed.skip.size() == pushed.rays.size());
+        const size_t count = size() + pushed.rays.size();
+        reserve_sparingly(rays_, count);
+        reserve_sparingly(tokens_, count);
+        reserve_sparingly(skip_, count);
         rays_.insert(rays_.end(), pushed.rays.begin(), pushed.rays.end());
         tokens_.insert(tokens_.end(), pushed.tokens.begin(), pushed.tokens.end());
         skip_.insert(skip_.end(), pushed.skip.begin(), pushed.skip.end());

@@ -41,13 +41,17 @@ FilmTiles::FilmTiles(uint32_t width, uint32_t height)
       order_(curve(columns_, rows_)),
       within_(curve(run_, side_)) {}
 
-void FilmTiles::append(uint32_t tile, std::vector<uint32_t>& pixels) const {
-    for (const uint32_t i : within_) {
-        const uint32_t x = tile % columns_ * run_ + i % run_;
-        const uint32_t y = tile / columns_ * side_ + i / run_;
-        if (x < width_ && y < height_)
-            pixels.push_back(y * width_ + x);
-    }
+std::vector<uint32_t> FilmTiles::pixels(std::span<const uint32_t> tiles) const {
+    std::vector<uint32_t> pixels;
+    pixels.reserve(tiles.size() * kTilePixels);
+    for (const uint32_t tile : tiles)
+        for (const uint32_t i : within_) {
+            const uint32_t x = tile % columns_ * run_ + i % run_;
+            const uint32_t y = tile / columns_ * side_ + i / run_;
+            if (x < width_ && y < height_)
+                pixels.push_back(y * width_ + x);
+        }
+    return pixels;
 }
 
 /// Returns for each tile the rank that most of a few rays come by first; kNone where they come by

@@ -4,8 +4,10 @@
 
 #include "host/film/film.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
+#include <iterator>
 #include <span>
 #include <vector>
 
@@ -28,19 +30,18 @@ public:
     /// a rank, that one, as long as it has not more than its part.
     std::vector<uint32_t> deal(uint32_t ranks, const FirstRanks& first_ranks) const;
 
-    /// Returns the pixels of those tiles for which wanted(tile), tile by tile along a curve, and in
-    /// a tile too, so that neighbours in the list are neighbours in the film.
+    /// Returns those tiles for which wanted(tile), along a curve, so that neighbours in the list
+    /// are neighbours in the film.
     template <class Wanted>
-    std::vector<uint32_t> pixels(Wanted&& wanted) const {
-        std::vector<uint32_t> all;
-        for (const uint32_t tile : order_)
-            if (wanted(tile))
-                append(tile, all);
-        return all;
+    std::vector<uint32_t> tiles(Wanted&& wanted) const {
+        std::vector<uint32_t> some;
+        std::ranges::copy_if(order_, std::back_inserter(some), wanted);
+        return some;
     }
+    /// Returns the pixels of the tiles, one tile after the other, in each along a curve too.
+    std::vector<uint32_t> pixels(std::span<const uint32_t> tiles) const;
 
 private:
-    void append(uint32_t tile, std::vector<uint32_t>& pixels) const;
     std::vector<uint32_t> wishes(uint32_t ranks, const FirstRanks& first_ranks) const;
 
     const uint32_t width_, height_;

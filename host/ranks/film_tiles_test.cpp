@@ -18,7 +18,7 @@ std::vector<uint32_t> nobody_knows(std::span<const uint32_t>) {
 TEST(FilmTiles, HaveEveryPixelOnce) {
     for (const auto& [width, height] : {std::pair{1u, 1u}, {37u, 50u}, {1000u, 1u}, {33u, 2u}}) {
         const FilmTiles tiles(width, height);
-        std::vector<uint32_t> pixels = tiles.pixels([](uint32_t) { return true; });
+        std::vector<uint32_t> pixels = tiles.pixels(tiles.tiles([](uint32_t) { return true; }));
         std::ranges::sort(pixels);
         ASSERT_EQ(pixels.size(), size_t(width) * height);
         for (uint32_t i = 0; i < pixels.size(); ++i)

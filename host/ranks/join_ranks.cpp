@@ -16,7 +16,7 @@ static uint64_t share_of_file(const std::string& path, uint32_t ranks) {
     constexpr uint64_t kLeast = uint64_t(8) << 20;
     std::error_code unreadable; // which whoever opens it will tell
     const uint64_t bytes = std::filesystem::file_size(path, unreadable);
-    return unreadable ? kLeast : std::max(kLeast, bytes / ranks / 4);
+    return unreadable ? kLeast : std::max(kLeast, bytes / ranks / 5);
 }
 
 Result<Done> join_ranks(BackendOptions& backend, SceneArguments& scene) {

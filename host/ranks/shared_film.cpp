@@ -48,17 +48,21 @@ public:
         assert(bytes.size() == size_of(pixels.size()));
         const std::byte* const done = bytes.data() + 1;
         const std::byte* const light = done + pixels.size();
+        constexpr size_t kAtOnce = size_t(1) << 14;
         std::vector<uint32_t> some;
         std::vector<Film::Sums> sums;
-        some.reserve(pixels.size());
-        sums.reserve(pixels.size());
-        for (size_t i = 0; i < pixels.size(); ++i)
+        for (size_t i = 0; i < pixels.size(); ++i) {
             if (done[i] != std::byte(0)) {
                 some.push_back(pixels[i]);
                 std::memcpy(&sums.emplace_back(), light + i * sizeof(Film::Sums),
                             sizeof(Film::Sums));
             }
-        film.restore(some, sums);
+            if (some.size() == kAtOnce || i + 1 == pixels.size()) {
+                film.restore(some, sums);
+                some.clear();
+                sums.clear();
+            }
+        }
         return bytes[0] != std::byte(0);
     }
 
@@ -116,32 +120,14 @@ private:
         return Done{};
     }
 
-    /// Returns the pixels of a round that are a rank's, whether they were done before or not.
-    std::vector<uint32_t> pixels_of(uint32_t rank, uint32_t round) const {
-        return tiles_.pixels(
+    /// Returns the tiles of a round that are a rank's, whether they were done before or not.
+    std::vector<uint32_t> tiles_of(uint32_t rank, uint32_t round) const {
+        return tiles_.tiles(
             [&](uint32_t tile) { return owners_[tile] == rank && round_of_tile_[tile] == round; });
     }
 
-    /// Returns the same for each rank: for those that take no pixels of others, only their own.
-    std::vector<std::vector<uint32_t>> pixels_of_ranks(uint32_t round) const {
-        std::vector<std::vector<uint32_t>> pixels(ranks_.count());
-        for (uint32_t rank = 0; rank < ranks_.count(); ++rank)
-            if (ranks_.is_first() || rank == ranks_.rank())
-                pixels[rank] = pixels_of(rank, round);
-        return pixels;
-    }
-
-    /// Returns the max number of a rank's pixels in a round; tiles at the film's sides count whole.
-    size_t max_pixels_of(uint32_t round) const {
-        std::vector<size_t> pixels(ranks_.count());
-        for (uint32_t tile = 0; tile < tiles_.count(); ++tile)
-            if (round_of_tile_[tile] == round)
-                pixels[owners_[tile]] += FilmTiles::kTilePixels;
-        return *std::ranges::max_element(pixels);
-    }
-
     Result<Done> run_round(uint32_t round) {
-        const bool complete = trace(pixels_of(ranks_.rank(), round));
+        const bool complete = trace(tiles_.pixels(tiles_of(ranks_.rank(), round)));
         if (ranks_.is_first() && !complete) {
             report_.complete = false;
             return Done{};
@@ -175,17 +161,14 @@ private:
     /// rank 0 has taken the one before, so that it needs room for a part, however large the film.
     /// The first part has no pixels: when it is over, all ranks have traced theirs.
     Result<Done> exchange(uint32_t round, bool complete) {
-        constexpr size_t kPartPixels = size_t(1) << 16; // of all ranks
-        const size_t part = std::max<size_t>(kPartPixels / ranks_.count(), 1);
-        const auto pixels = pixels_of_ranks(round);
-        const size_t max = max_pixels_of(round);
+        constexpr size_t kPartTiles = (size_t(1) << 17) / FilmTiles::kTilePixels; // of all ranks
+        const size_t part = std::max<size_t>(kPartTiles / ranks_.count(), 1);
+        std::vector<std::vector<uint32_t>> tiles;
+        size_t max = 0; // of a rank
+        for (uint32_t rank = 0; rank < ranks_.count(); ++rank)
+            max = std::max(max, tiles.emplace_back(tiles_of(rank, round)).size());
         for (size_t first = 0, count = 0; first < max; first += count, count = part) {
-            std::vector<std::span<const uint32_t>> parts;
-            for (const std::vector<uint32_t>& all : pixels) {
-                const size_t from = std::min(first, all.size());
-                parts.push_back(std::span(all).subspan(from, std::min(count, all.size() - from)));
-            }
-            if (const Result<Done> taken = gather_part(parts, complete); !taken)
+            if (const Result<Done> taken = gather_part(tiles, first, count, complete); !taken)
                 return stop(taken.error());
             if (const Result<Done> told = tell_of_first({}, complete); !told)
                 return stop(told.error());
@@ -196,20 +179,26 @@ private:
         }
         if (!options_.to_all || !report_.complete)
             return Done{};
-        const Result<Done> told = tell_of_first(
-            tiles_.pixels([&](uint32_t tile) { return round_of_tile_[tile] == round; }), complete);
+        const auto all = tiles_.tiles([&](uint32_t tile) { return round_of_tile_[tile] == round; });
+        const Result<Done> told = tell_of_first(tiles_.pixels(all), complete);
         return told ? told : stop(told.error());
     }
 
-    /// Brings the pixels of each rank to rank 0. complete: whether this rank's are; on rank 0,
-    /// whether those of all ranks are.
-    Result<Done> gather_part(std::span<const std::span<const uint32_t>> pixels, bool& complete) {
-        const std::span<const uint32_t> mine =
-            ranks_.is_first() ? std::span<const uint32_t>() : pixels[ranks_.rank()];
+    /// Brings the pixels of `count` tiles of each rank to rank 0. complete: whether this rank's
+    /// are; on rank 0, whether those of all ranks are.
+    Result<Done> gather_part(std::span<const std::vector<uint32_t>> tiles, size_t first,
+                             size_t count, bool& complete) {
+        const auto pixels_of = [&](uint32_t rank) {
+            const std::span<const uint32_t> all = tiles[rank];
+            const size_t from = std::min(first, all.size());
+            return tiles_.pixels(all.subspan(from, std::min(count, all.size() - from)));
+        };
+        const std::vector<uint32_t> mine =
+            ranks_.is_first() ? std::vector<uint32_t>() : pixels_of(ranks_.rank());
         return ranks_.gather(PixelBytes::of(film_, mine, complete), goes_on(),
                              [&](uint32_t rank, std::span<const std::byte> bytes) {
                                  if (rank != 0)
-                                     complete &= PixelBytes::restore(bytes, pixels[rank], film_);
+                                     complete &= PixelBytes::restore(bytes, pixels_of(rank), film_);
                              });
     }
 

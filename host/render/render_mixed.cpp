@@ -3,6 +3,7 @@
 // spawns join the stream at once.
 #include "host/render/render_mixed.h"
 
+#include "core/reserve_sparingly.h"
 #include "core/system/parallel.h"
 #include "core/system/stopwatch.h"
 #include "host/render/slots.h"
@@ -15,16 +16,6 @@ namespace ovc {
 namespace {
 
 constexpr size_t kCopyGrain = 1024; // rays a task that only copies
-
-/// Makes room for so many items, and for not many more: rays under way are most of the memory that
-/// rendering takes.
-template <class T>
-void grow(std::vector<T>& items, size_t count) {
-    if (count > items.capacity())
-        items.reserve(count + count / 4);
-    if (count > items.size())
-        items.resize(count);
-}
 
 /// The rays of one kind in the stream, until their answers come. A token holds the kind above and
 /// the ray's slot below.
@@ -39,9 +30,9 @@ public:
 
     void push(RayStream& stream, const RayList<Purpose>& rays) {
         const std::vector<uint32_t> taken = slots_.take(rays.size());
-        grow(purposes_, slots_.end());
+        grow(purposes_);
         if (keeps_rays_)
-            grow(rays_, slots_.end());
+            grow(rays_);
         tokens_.resize(rays.size());
         parallel_for(rays.size(), kCopyGrain, [&](size_t first, size_t last) {
             for (size_t i = first; i < last; ++i) {
@@ -78,6 +69,15 @@ public:
 
 private:
     static constexpr uint64_t kKindBits = ~uint64_t(0) << 32;
+
+    /// Makes an item for each slot.
+    template <class T>
+    void grow(std::vector<T>& items) const {
+        if (items.size() >= slots_.end())
+            return;
+        reserve_sparingly(items, slots_.end());
+        items.resize(slots_.end());
+    }
 
     const uint64_t kind_;
     const bool any_hit_, keeps_rays_;

@@ -14,7 +14,7 @@ namespace ovc {
 /// there when another ends. More of them take more memory.
 static constexpr size_t kBatches = 4;
 /// A batch has so many rays a thread: with as many, messages and passes cost what their rays do.
-static constexpr size_t kRaysAThread = size_t(1) << 11, kFewRays = size_t(1) << 12,
+static constexpr size_t kRaysAThread = size_t(3) << 10, kFewRays = size_t(3) << 11,
                         kMaxBatchRays = size_t(1) << 17;
 /// Fewer rays wait for others, while there is something to do.
 static constexpr size_t kMinBatchRays = size_t(1) << 12;

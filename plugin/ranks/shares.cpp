@@ -256,9 +256,10 @@ std::vector<uint32_t> share_out(const BuiltScene& scene, std::span<const PageBox
                                 const ShareOptions& options) {
     assert(options.ranks > 0);
     std::vector<uint32_t> owners(scene.pages.size(), 0);
-    // E bytes everywhere of T in all leave (T - E) / N + E to each of N ranks.
-    const uint64_t max_everywhere =
-        options.ranks > 1 ? scene.level2_bytes() / (2 * (options.ranks - 1)) : 0;
+    // E bytes everywhere of T in all leave (T - E) / N + E to each of N ranks: a part, and an N-th
+    // of it, where E is T / (N (N - 1)).
+    const uint64_t ranks = options.ranks;
+    const uint64_t max_everywhere = ranks > 1 ? scene.level2_bytes() / (ranks * (ranks - 1)) : 0;
     const uint64_t room =
         give_instances_to_all(scene, std::min(options.everywhere_bytes, max_everywhere), owners);
     Box around;

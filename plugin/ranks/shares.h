@@ -29,7 +29,7 @@ struct ShareOptions {
     uint32_t ranks = 1;
     /// Pages of meshes that are placed several times, those of the most instances first, and then
     /// those that the most rays a byte come by are on every rank while they take no more than this
-    /// together, and than lets no rank have more than 1.5 times its part of all pages.
+    /// together, and than lets no rank of N have more than (N + 1) / N of its part of all pages.
     uint64_t everywhere_bytes = uint64_t(24) << 20;
     /// Rays such as will be traced. None: random lines through the scene.
     std::span<const Ray> sample{};

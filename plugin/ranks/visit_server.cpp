@@ -15,7 +15,7 @@ namespace ovc {
 
 /// A batch has so many rays a thread at most, unless one message has more: passes over as many cost
 /// what their rays do, and what comes from other ranks meanwhile does not wait for long.
-static constexpr size_t kMaxRaysAThread = size_t(1) << 14;
+static constexpr size_t kMaxRaysAThread = size_t(1) << 13;
 
 /// The visits of several messages as a call takes them. A single message's rays stay where they
 /// are; those of several are copied, into arrays that keep their memory from batch to batch.
