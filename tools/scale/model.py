@@ -14,8 +14,8 @@ import math
 
 # As in plugin/ranks/routed_stream.cpp and visit_server.cpp, of which the last two are a thread's.
 BATCHES = 4
-MIN_BATCH, MAX_BATCH, BATCH_A_THREAD = 1 << 13, 1 << 17, 1 << 12
-SERVER_BATCH_A_THREAD = 1 << 14
+MIN_BATCH, MAX_BATCH, BATCH_A_THREAD = 3 << 11, 1 << 17, 3 << 10
+SERVER_BATCH_A_THREAD = 1 << 13
 VISIT_BYTES, ANSWER_BYTES = 72, 32
 MAX_SIMULATED = 16     # ranks; of more, so many stand for all
 
