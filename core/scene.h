@@ -4,8 +4,10 @@
 #pragma once
 
 #include "core/cutout.h"
+#include "core/face_camera.h"
 #include "core/file/mapped_file.h"
 #include "core/file/scene_on_disk.h"
+#include "core/medium.h"
 #include "core/soup.h"
 #include "core/texture/bump.h"
 #include "core/texture/normal_map.h"
@@ -128,6 +130,7 @@ struct Material {
     /// into Scene::materials. This material then only says what the rest of the scene asks of it.
     std::optional<PlacedTexture> mix;
     std::optional<Absorption> absorption; // of light that comes to the surface from inside
+    std::vector<Medium> media;            // that fill the inside
     /// POV-Ray's substitute for focused light: shadow rays that pass the surface are multiplied by
     /// 1 + cosine ^ (45 x caustics), with the angle to the normal; 0: they are not.
     float caustics = 0;
@@ -200,7 +203,8 @@ struct Light {
     /// All light goes along `direction`, from the plane through `position` that is perpendicular to
     /// it. Surfaces behind that plane are lit too, as in POV-Ray.
     bool parallel = false;
-    bool shadowless = false; // shines through everything, and makes no highlights
+    bool shadowless = false;  // shines through everything, and makes no highlights
+    bool lights_media = true; // media scatter it
     /// Unless 0, the light is multiplied by 2 / (1 + (distance / fade_distance) ^ fade_power).
     /// Light that falls with the square of the distance has a tiny fade_distance D, power 2, color
     /// / (2 D^2).
@@ -264,6 +268,7 @@ struct Camera {
     /// right and from bottom to top. Its textures are those of the scene.
     std::optional<Bump> bump;
     std::optional<Lens> lens; // none: everything is sharp, as it is in a bent picture
+    bool by_faces = false;    // rays come from Scene::faces, and the rest says about where they go
 };
 
 struct ImageSize {
@@ -294,6 +299,7 @@ struct Background {
     std::vector<PlacedTexture> layers;
     bool tints = true; // what a layer's filter lets through takes on its color
     std::vector<Fog> fogs;
+    std::vector<Medium> media; // that fill the air, outside of solids
 
     bool operator==(const Background&) const = default;
 };
@@ -354,8 +360,10 @@ struct Scene {
     bool moves = false;                // something in it goes by the Moment
     bool may_add_light = true;         // without lights the host adds one beside the camera
     std::optional<Camera> camera;      // none: the host frames the bounds
+    std::optional<FaceCamera> faces;   // of a camera by_faces
     std::optional<ImageSize> size;     // of the picture, where the file asks for one
     std::optional<uint32_t> max_depth; // reflections and refractions in a row; none: the host's
+    std::optional<uint32_t> samples;   // rays a pixel that its camera takes; none: the host's
     Background background;
     std::optional<Radiosity> radiosity;
     float exposure = 1; // lights, background and emission were multiplied by it to fit a picture

@@ -99,9 +99,14 @@ void each_field(auto& io, Some<Absorption> auto& a) {
     io(a.distance, a.power, a.color);
 }
 
+void each_field(auto& io, Some<Medium> auto& m) {
+    io(m.absorption, m.emission, m.scattering, m.extinction, m.phase, m.eccentricity, m.densities,
+       m.samples);
+}
+
 void each_field(auto& io, Some<Material> auto& m) {
     io(m.name, m.color, m.mirror, m.transmission, m.filter, m.ior, m.finish, m.optics, m.texture,
-       m.bump, m.normal_map, m.maps, m.under, m.absorption, m.caustics, m.inside, m.mix);
+       m.bump, m.normal_map, m.maps, m.under, m.absorption, m.media, m.caustics, m.inside, m.mix);
 }
 
 void each_field(auto& io, Some<Cutout> auto& c) {
@@ -115,7 +120,7 @@ void each_field(auto& io, Some<SpotCone> auto& c) {
 
 void each_field(auto& io, Some<Light> auto& l) {
     io(l.position, l.color, l.shadow_offset, l.on_camera, l.direction, l.cone, l.parallel,
-       l.shadowless, l.fade_distance, l.fade_power, l.stand_in);
+       l.shadowless, l.lights_media, l.fade_distance, l.fade_power, l.stand_in);
 }
 
 void each_field(auto& io, Some<ImageWindow> auto& w) {
@@ -123,7 +128,15 @@ void each_field(auto& io, Some<ImageWindow> auto& w) {
 }
 
 void each_field(auto& io, Some<Camera> auto& c) {
-    io(c.eye, c.target, c.up, c.fov_degrees, c.window, c.bump, c.lens);
+    io(c.eye, c.target, c.up, c.fov_degrees, c.window, c.bump, c.lens, c.by_faces);
+}
+
+void each_field(auto& io, Some<FaceMesh> auto& m) {
+    io(m.corners, m.normals, m.uv);
+}
+
+void each_field(auto& io, Some<FaceCamera> auto& c) {
+    io(c.order, c.meshes, c.ahead, c.backwards);
 }
 
 void each_field(auto& io, Some<ImageSize> auto& s) {
@@ -135,7 +148,7 @@ void each_field(auto& io, Some<Fog> auto& f) {
 }
 
 void each_field(auto& io, Some<Background> auto& b) {
-    io(b.horizon, b.zenith, b.layers, b.tints, b.fogs);
+    io(b.horizon, b.zenith, b.layers, b.tints, b.fogs, b.media);
 }
 
 void each_field(auto& io, Some<Omission> auto& o) {
@@ -156,8 +169,8 @@ void each_field(auto& io, Some<MeshInfo> auto& m) {
 /// Passes all fields except meshes, soup, and what the file's other parts hold.
 void each_field(auto& io, Some<Scene> auto& s) {
     io(s.name, s.materials, s.textures, s.pictures, s.bumps, s.cutouts, s.lights, s.may_add_light,
-       s.camera, s.size, s.max_depth, s.background, s.radiosity, s.exposure, s.gamma, s.omissions,
-       s.instancing);
+       s.camera, s.faces, s.size, s.max_depth, s.samples, s.background, s.radiosity, s.exposure,
+       s.gamma, s.omissions, s.instancing);
 }
 
 void each_field(auto& io, Some<FileStamp> auto& f) {

@@ -28,7 +28,7 @@ namespace {
 constexpr std::string_view kKind = "ovc scene";
 /// Raise it with every change of scene_fields.h, and when an importer makes another scene of the
 /// same file.
-constexpr uint32_t kVersion = 13;
+constexpr uint32_t kVersion = 14;
 
 /// The checksums of the blocks (core/file/file_blocks.h) of corners, normals and texture
 /// coordinates.
@@ -136,6 +136,17 @@ bool share_out(std::span<const MeshExtent> extents, const Sharing& sharing, Scen
     return first.corners == all.corners && first.normals == all.normals && first.uv == all.uv;
 }
 
+bool is_sound(const FaceCamera& camera) {
+    if (camera.meshes.empty() || camera.order > FaceCamera::Order::ByUv)
+        return false;
+    return std::all_of(camera.meshes.begin(), camera.meshes.end(), [&](const FaceMesh& mesh) {
+        const size_t faces = mesh.corners.size();
+        const bool has_uv = camera.order == FaceCamera::Order::ByUv;
+        return (mesh.normals.empty() || mesh.normals.size() == faces) &&
+               mesh.uv.size() == (has_uv ? faces : 0);
+    });
+}
+
 /// Checks what the host relies on.
 bool is_sound(const Scene& scene) {
     constexpr uint32_t kMaxPixels = 65535; // per side
@@ -156,6 +167,8 @@ bool is_sound(const Scene& scene) {
             (cutout.opacity.empty() && cutout.texture == kNoTexture) ||
             cutout.opacity.size() != uint64_t(cutout.width) * cutout.height)
             return false;
+    if (scene.faces && !is_sound(*scene.faces))
+        return false;
     using Bend = ImageWindow::Bend;
     return !scene.camera || !scene.camera->window ||
            (scene.camera->window->bend >= Bend::Flat &&

@@ -129,6 +129,17 @@ inline bool has_sound_bumps(const Scene& scene) {
     });
 }
 
+/// Returns whether the media's densities are colors.
+template <class IsColor>
+bool has_sound_densities(const std::vector<Medium>& media, const IsColor& is_color) {
+    return std::all_of(media.begin(), media.end(), [&](const Medium& medium) {
+        return medium.samples >= 1 && medium.phase <= Medium::Phase::HenyeyGreenstein &&
+               std::abs(medium.eccentricity) < 1 &&
+               std::all_of(medium.densities.begin(), medium.densities.end(),
+                           [&](const PlacedTexture& density) { return is_color(density.texture); });
+    });
+}
+
 /// Returns whether the material's textures exist and are colors, as is_color(number) says.
 template <class IsColor>
 bool has_sound_textures(const Scene& scene, const Material& material, const IsColor& is_color) {
@@ -142,6 +153,8 @@ bool has_sound_textures(const Scene& scene, const Material& material, const IsCo
                                    material.maps->emission, material.maps->metallic})
             if (map != kNone && !is_color(map))
                 return false;
+    if (!has_sound_densities(material.media, is_color))
+        return false;
     return !material.mix || (material.mix->texture < scene.textures.size() &&
                              scene.textures[material.mix->texture].kind == TextureKind::Pattern);
 }
@@ -184,8 +197,10 @@ inline bool has_sound_textures(const Scene& scene) {
                                [&](const Cutout& cutout) {
                                    return cutout.texture == kNoTexture || is_color(cutout.texture);
                                }) &&
-           std::ranges::all_of(scene.background.layers,
-                               [&](const PlacedTexture& layer) { return is_color(layer.texture); });
+           std::ranges::all_of(
+               scene.background.layers,
+               [&](const PlacedTexture& layer) { return is_color(layer.texture); }) &&
+           has_sound_densities(scene.background.media, is_color);
 }
 
 } // namespace ovc

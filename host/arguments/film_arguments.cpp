@@ -26,7 +26,7 @@ void FilmArguments::add_samples_to(CLI::App& app) {
     app.add_option(
            "--samples,--spp", samples_,
            "Rays a pixel, up to 65536: more of them smooth edges; the same ones every time; "
-           "default: 1, through its middle")
+           "default: what the file asks for, else 1, through its middle")
         ->type_name("N");
     app.add_option(
            "--antialias", antialias_,
@@ -211,7 +211,7 @@ Result<Done> FilmArguments::resolve_passes(RenderJob& job) const {
                                  option)};
     if (Ranks::are_there())
         return Error{fmt::format("{} is for one process; under mpirun, give --samples", option)};
-    progressive.max_samples = samples_.empty() ? kMaxSamples : job.samples;
+    progressive.max_samples = job.samples.value_or(kMaxSamples);
     job.samples = 1; // of the film
     job.render.progressive = progressive;
     return Done{};
@@ -219,7 +219,7 @@ Result<Done> FilmArguments::resolve_passes(RenderJob& job) const {
 
 /// Returns whether pixels get several samples, whose places a filter or a lens can spread.
 static bool has_samples(const RenderJob& job) {
-    return job.samples > 1 || job.render.progressive;
+    return job.samples.value_or(1) > 1 || job.render.progressive;
 }
 
 Result<Done> FilmArguments::resolve_filter(RenderJob& job) const {

@@ -83,11 +83,16 @@ Pinhole::Pinhole(const Camera& camera, const PicturePart& part, const Scene* sce
         if (camera.window->bend != ImageWindow::Bend::Flat)
             bent_ = *camera.window;
     }
+    if (camera.by_faces && scene && scene->faces)
+        faces_.emplace(*scene->faces, part.picture);
     if (bent_)
         lens_.reset();
 }
 
-Ray Pinhole::ray(uint32_t x, uint32_t y, const dvec2& place, const dvec2& lens) const {
+Ray Pinhole::ray(uint32_t x, uint32_t y, const dvec2& place, const dvec2& lens,
+                 uint32_t sample) const {
+    if (faces_)
+        return faces_->ray(part_.left + x, part_.top + y, place, sample);
     const dvec2 at = (dvec2(part_.left + x, part_.top + y) + place) /
                      dvec2(part_.picture.width, part_.picture.height);
     Ray ray = straight_ray(at);

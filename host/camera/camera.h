@@ -7,6 +7,7 @@
 #include "core/ray.h"
 #include "core/result.h"
 #include "core/scene.h"
+#include "host/camera/face_rays.h"
 
 #include <cstdint>
 #include <optional>
@@ -36,7 +37,8 @@ class Pinhole {
 public:
     /// part: must lie within its picture. camera: check_camera() must accept it; an up along the
     /// view is replaced by an axis that is not.
-    /// scene: has the textures of the camera's bump, and must outlive it; null: it has none.
+    /// scene: has the faces of the camera and the textures of its bump, and must outlive it; null:
+    /// it has none.
     Pinhole(const Camera& camera, const PicturePart& part, const Scene* scene = nullptr);
     Pinhole(const Camera& camera, uint32_t width, uint32_t height)
         : Pinhole(camera, {{width, height}, 0, 0, {width, height}}) {}
@@ -46,8 +48,9 @@ public:
     /// window in units of its direction. A pixel that a bent picture leaves out gets a ray with a
     /// dir of 0, which hits nothing. A place outside of the pixel is one in its neighbours.
     /// lens: a place in the unit disk, where the ray goes through the camera's lens, if it has one.
-    Ray ray(uint32_t x, uint32_t y, const dvec2& place = dvec2(0.5),
-            const dvec2& lens = dvec2(0)) const;
+    /// sample: the ray's number in its pixel, which chooses the face of a camera that has faces.
+    Ray ray(uint32_t x, uint32_t y, const dvec2& place = dvec2(0.5), const dvec2& lens = dvec2(0),
+            uint32_t sample = 0) const;
 
     bool has_lens() const { return lens_.has_value(); }
 
@@ -69,6 +72,7 @@ private:
     dvec3 middle_, to_right_, to_top_;
     bool orthographic_ = false;
     std::optional<ImageWindow> bent_;
+    std::optional<FaceRays> faces_;
 };
 
 /// Returns the pixels y * width + x of an image, each once, along Hilbert's curve. Neighbours in

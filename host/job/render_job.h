@@ -56,7 +56,7 @@ struct RenderJob {
     const Denoiser* denoiser = nullptr; // that finished pictures go through; or null
     bool view = false;                  // a window shows the picture, and each frame
     std::optional<uint32_t> max_depth;  // none: the scene's, else that of `render`
-    uint32_t samples = 1;               // camera rays a pixel
+    std::optional<uint32_t> samples;    // camera rays a pixel; none: the scene's, else 1
     BackendOptions backend;
     Aovs aovs;                                       // in the outputs that take layers
     int png_bits = 8;                                // per channel, 8 or 16

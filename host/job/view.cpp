@@ -28,10 +28,25 @@ namespace ovc {
 
 namespace fs = std::filesystem;
 
+/// Returns how many camera rays each pixel gets, or at least gets.
+static uint32_t samples_of(const RenderJob& job, const Scene& scene) {
+    // Those of the file are for its own camera, whose lens or faces need them.
+    const bool own_camera = !job.camera && job.lens_radius.value_or(1) > 0;
+    const uint32_t asked_for =
+        own_camera && !job.render.progressive ? scene.samples.value_or(1) : 1;
+    return job.samples.value_or(std::clamp(asked_for, 1u, kMaxSamples));
+}
+
 static RenderOptions render_options(const RenderJob& job, const PicturePart& part,
-                                    const Scene& scene) {
+                                    const Scene& scene, const LogSink& log) {
     RenderOptions options = job.render;
     options.part = part;
+    if (options.antialias && samples_of(job, scene) > 1) {
+        say(log, LogLevel::Info,
+            fmt::format("{}: its camera takes {} rays a pixel, in place of --antialias",
+                        job.scene.name(), samples_of(job, scene)));
+        options.antialias.reset();
+    }
     // A file's depth is meant for mirrors and glass; path tracing follows light for longer.
     const uint32_t otherwise = options.integrator == IntegratorKind::Path
                                    ? PathTracerOptions{}.max_depth
@@ -57,7 +72,8 @@ public:
         : job_(of.job),
           log_(of.log),
           watchers_(of.watchers),
-          options_(render_options(of.job, of.part, of.scene)),
+          options_(render_options(of.job, of.part, of.scene, of.log)),
+          samples_(samples_of(of.job, of.scene)),
           scene_(of.scene),
           lights_(of.stage.lights()),
           stage_(of.stage),
@@ -88,7 +104,7 @@ private:
         FrameStats frame = begun;
         frame.frame = shot.frame;
         scene_.lights = placed_lights(scene_, lights_, shot.camera);
-        Film film(options_.part->size.width, options_.part->size.height, job_.samples);
+        Film film(options_.part->size.width, options_.part->size.height, samples_);
         if (const Result<Done> done = go_on_with(shot, film); !done)
             return done.error();
         if (job_.render.ranks)
@@ -244,7 +260,7 @@ private:
 
     /// Returns the number of samples whose mean the picture shows, as far as layers need it.
     uint32_t samples_of_layers() const {
-        return options_.progressive || options_.antialias ? kMaxSamples : job_.samples;
+        return options_.progressive || options_.antialias ? kMaxSamples : samples_;
     }
 
     Result<std::vector<Layer>> traced_layers(const View& shot, const Aovs& aovs) {
@@ -297,6 +313,7 @@ private:
     const LogSink& log_;
     Watchers& watchers_;
     const RenderOptions options_;
+    const uint32_t samples_; // camera rays a pixel
     Scene& scene_;
     const std::vector<Light>& lights_; // as the scene or the user has them
     Stage& stage_;

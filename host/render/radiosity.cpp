@@ -18,8 +18,8 @@ namespace {
 
 constexpr uint32_t kMaxColumns = 80; // of the grid, and of its rows
 constexpr size_t kPointsAtOnce = 256;
-/// So many rays leave a point. Each asks all lights, so that scenes of many lights get fewer.
-constexpr size_t kMaxRays = 96, kMinRays = 24, kRaysTimesLights = 512;
+/// So many rays leave a point. Each asks at most kLightsARay lights, others than the ray before.
+constexpr size_t kMaxRays = 96, kRaysTimesLights = 512, kLightsARay = 8;
 constexpr uint64_t kSeed = 33;
 
 /// Returns a direction around the normal, more often where the cosine is larger.
@@ -41,8 +41,9 @@ public:
           sight_(sight),
           backend_(backend),
           options_(options),
-          rays_a_point_(
-              std::clamp(kRaysTimesLights / (scene.lights.size() + 1), kMinRays, kMaxRays)) {}
+          light_stride_((scene.lights.size() + kLightsARay - 1) / kLightsARay),
+          rays_a_point_(std::min(
+              kRaysTimesLights / (std::min(scene.lights.size(), kLightsARay) + 1), kMaxRays)) {}
 
     Result<Done> find_points(const Pinhole& pinhole) {
         RayList<Path> rays;
@@ -67,7 +68,8 @@ public:
 
     /// Finds the light at the points, with that of the bounces before; null: there are none.
     Result<Done> gather(const BouncedLight* before) {
-        const Whitted integrator(scene_, up_, options_.max_depth, options_.shadows, before);
+        const Whitted integrator(scene_, up_, options_.max_depth, options_.shadows, before,
+                                 uint32_t(std::max<size_t>(light_stride_, 1)));
         for (size_t first = 0; first < points_.size(); first += kPointsAtOnce) {
             const size_t count = std::min(kPointsAtOnce, points_.size() - first);
             if (const Result<Done> done = gather(integrator, first, count); !done)
@@ -81,7 +83,7 @@ public:
 private:
     Result<Done> gather(const Whitted& integrator, size_t first, size_t count) {
         Film film(uint32_t(count), 1, uint32_t(rays_a_point_));
-        Shading shading(integrator, scene_.lights.size(), film);
+        Shading shading(integrator, max_shadow_rays(scene_), film);
         Spawned waiting;
         for (size_t p = 0; p < count; ++p)
             add_rays(first + p, uint32_t(p), waiting.paths);
@@ -158,6 +160,7 @@ private:
     const Sight& sight_;
     Backend& backend_;
     const GatherOptions options_;
+    const size_t light_stride_;
     const size_t rays_a_point_;
     std::vector<BouncedLight::Record> points_;
     std::vector<TriangleId> starts_; // the triangles that they lie on

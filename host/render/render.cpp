@@ -227,7 +227,7 @@ private:
 
     Result<RenderReport> trace(const Integrator& integrator, const CameraRays& rays,
                                const RenderObserver& observe, Film& film) {
-        const size_t lights = scene_.lights.size();
+        const size_t lights = max_shadow_rays(scene_);
         // Where rays visit other ranks, a batch would wait at its end for its last answers.
         const bool as_stream = options_.mode == RenderMode::Mixed ||
                                (options_.ranks && backend_.statistics().ranks > 1);

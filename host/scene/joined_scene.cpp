@@ -30,10 +30,13 @@ public:
         Scene& scene = next.scene;
         add_instancing(scene);
         move_bumps(scene, uint32_t(all_.textures.size()), uint32_t(all_.bumps.size()));
+        if (!all_.camera)
+            all_.faces = std::move(scene.faces);
         take_first(all_.camera, scene.camera, next.name, "camera");
         all_.moves = all_.moves || scene.moves;
         take_first(all_.size, scene.size, next.name, "picture's size");
         take_first(all_.max_depth, scene.max_depth, next.name, "depth");
+        take_first(all_.samples, scene.samples, next.name, "rays a pixel");
         take_gamma(scene, next.name);
         const auto materials = uint32_t(all_.materials.size());
         const auto meshes = uint32_t(all_.meshes.size());
@@ -92,6 +95,7 @@ private:
             for (std::optional<PlacedTexture>* placed : {&material.texture, &material.mix})
                 if (*placed)
                     (*placed)->texture += textures;
+            move_media(material.media, textures);
         }
         for (size_t t = 0; t < scene.textures.size(); ++t) {
             for (TextureStop& stop : scene.textures[t].stops)
@@ -102,6 +106,13 @@ private:
         }
         for (PlacedTexture& layer : scene.background.layers)
             layer.texture += textures;
+        move_media(scene.background.media, textures);
+    }
+
+    static void move_media(std::vector<Medium>& media, uint32_t textures) {
+        for (Medium& medium : media)
+            for (PlacedTexture& density : medium.densities)
+                density.texture += textures;
     }
 
     static void move_bumps(Scene& scene, uint32_t textures, uint32_t bumps) {

@@ -31,6 +31,8 @@ struct Path {
     float behind = 0; // path tracing: the distance from the ray's origin back to where the
                       // direction was chosen, through panes that do not bend it
     Cone cone = {};
+    /// The material in whose media the ray is, as far as the path has seen; kNone: in none.
+    uint32_t inside = kNone;
 };
 
 /// The purpose of a shadow ray, which reaches the light, or a point of it, at t = 1.

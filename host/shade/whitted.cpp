@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 namespace ovc {
@@ -19,6 +20,7 @@ struct Whitted::Met {
     SurfacePoint surface;
     TriangleId id;
     uint32_t pixel;
+    uint32_t sample;
     vec3 weight;
 };
 
@@ -91,14 +93,17 @@ void tell_simplifications(const Scene& scene, std::span<const Light> lights,
 }
 
 Whitted::Whitted(const Scene& scene, const vec3& up, uint32_t max_depth, bool shadows,
-                 const BouncedLight* bounced)
+                 const BouncedLight* bounced, uint32_t light_stride)
     : scene_(scene),
       up_(up),
       max_depth_(max_depth),
       shadows_(shadows),
       bounced_(bounced),
-      light_may_pass_(lets_light_through(scene)) {
+      light_stride_(light_stride),
+      light_may_pass_(lets_light_through(scene)),
+      has_media_(has_media(scene)) {
     assert(max_depth <= UINT16_MAX); // Path::depth counts to it
+    assert(light_stride >= 1);
 }
 
 void Whitted::shade(std::span<const Ray> rays, std::span<const Path> paths,
@@ -108,6 +113,8 @@ void Whitted::shade(std::span<const Ray> rays, std::span<const Path> paths,
     for (size_t i = 0; i < rays.size(); ++i) {
         Path path = paths[i];
         dim_by_fog(rays[i], hits[i], path, film);
+        if (has_media_)
+            dim_by_media(rays[i], hits[i], path, film, spawned);
         if (!hits[i].is_hit()) {
             film.add(path.pixel, path.weight * background_color(scene_, up_, rays[i].dir));
             continue;
@@ -121,7 +128,8 @@ void Whitted::shade(std::span<const Ray> rays, std::span<const Path> paths,
     }
     for (uint32_t light = 0; light < scene_.lights.size(); ++light)
         for (const Met& met : all)
-            light_up(scene_.lights[light], light, met, film, spawned);
+            if ((met.sample + light) % light_stride_ == 0)
+                light_up(scene_.lights[light], light, met, film, spawned);
 }
 
 /// Takes the light that fog keeps from the path, and adds the fog's own. There is none inside of
@@ -135,11 +143,69 @@ void Whitted::dim_by_fog(const Ray& ray, const Hit& hit, Path& path, Film& film)
     path.weight *= fog.share;
 }
 
+/// The way of a ray that hits nothing through media, as povray has it.
+static constexpr double kEndlessMedia = 1e7;
+
+std::span<const Medium> Whitted::media_before(const Ray& ray, const Path& path,
+                                              const Hit& hit) const {
+    const uint32_t material = hit.is_hit() ? scene_.meshes[hit.id.mesh].material : kNone;
+    const bool leaves = hit.is_hit() && is_inside(scene_, ray, hit);
+    if (leaves && !scene_.materials[material].media.empty())
+        return scene_.materials[material].media;
+    if (path.inside != kNone && hit.is_hit())
+        return scene_.materials[path.inside].media;
+    return leaves ? std::span<const Medium>() : scene_.background.media;
+}
+
+/// Takes the light that media keep from the path, and adds theirs and that of lamps which they
+/// scatter.
+void Whitted::dim_by_media(const Ray& ray, const Hit& hit, Path& path, Film& film,
+                           Spawned& spawned) const {
+    const std::span<const Medium> media = media_before(ray, path, hit);
+    if (media.empty())
+        return;
+    const double end = hit.is_hit() ? hit.t : kEndlessMedia / glm::length(ray.dir);
+    const ThroughMedia through = through_media(scene_.textures, media, ray, end);
+    const dvec3 way = glm::normalize(ray.dir);
+    for (const ScatteringPlace& from : through.scattering)
+        scatter(from, way, path, film, spawned);
+    film.add(path.pixel, path.weight * through.added);
+    path.weight *= through.share;
+}
+
+void Whitted::scatter(const ScatteringPlace& from, const dvec3& way, const Path& path, Film& film,
+                      Spawned& spawned) const {
+    for (uint32_t number = 0; number < scene_.lights.size(); ++number) {
+        const Light& light = scene_.lights[number];
+        const FromLight arriving = light.lights_media ? light_at(light, from.at) : FromLight{};
+        const double phase = phase_of(*from.medium, glm::dot(way, arriving.towards));
+        const vec3 seen = path.weight * from.share * float(phase) * arriving.color *
+                          std::numbers::inv_pi_v<float>;
+        if (max_component(seen) < kMinShadow)
+            continue;
+        if (!shadows_ || light.shadowless)
+            film.add(path.pixel, seen);
+        else
+            spawned.shadows.push(shadow_ray(light, from.at), TriangleId(),
+                                 {path.pixel, number, 0, seen});
+    }
+}
+
+/// Returns in whose media a ray is that leaves the surface.
+uint32_t Whitted::inside_behind(const Path& path, const Met& met, bool goes_through) const {
+    const uint32_t material = scene_.meshes[met.id.mesh].material;
+    if (!has_media_ || material >= scene_.materials.size() ||
+        scene_.materials[material].media.empty())
+        return path.inside;
+    return goes_through == met.surface.entering ? material : kNone;
+}
+
 /// Divides the path's weight among the surface's own color and the two rays that may leave it. The
 /// color keeps the weight of a ray that is not followed.
 Whitted::Met Whitted::meet(const Ray& ray, const Path& path, const Hit& hit,
                            Spawned& spawned) const {
-    Met met{surface_point(scene_, ray, hit, path.cone), hit.id, path.pixel, path.weight};
+    Met met{surface_point(scene_, ray, hit, path.cone), hit.id, path.pixel, path.sample,
+            path.weight};
     const Cone cone{path.cone.width_at(hit.t * glm::length(ray.dir)), path.cone.spread};
     const vec3 arriving = path.weight * share_kept(ray, met.surface);
     met.weight = arriving;
@@ -156,7 +222,8 @@ Whitted::Met Whitted::meet(const Ray& ray, const Path& path, const Hit& hit,
         const bool reflected = path.reflected || kind == RayKind::Reflection;
         spawned.paths.push(child(), hit.id,
                            {path.pixel, path.sample, uint16_t(path.depth + deeper), kind, reflected,
-                            /* scattered= */ false, weight, path.density, path.behind, cone});
+                            /* scattered= */ false, weight, path.density, path.behind, cone,
+                            inside_behind(path, met, kind == RayKind::Refraction)});
     };
     follow(parts.mirror, parts.taken_by_mirror, RayKind::Reflection, 1,
            [&] { return mirror_ray(ray, met.surface); });
@@ -169,7 +236,7 @@ Whitted::Met Whitted::meet(const Ray& ray, const Path& path, const Hit& hit,
 
 void Whitted::light_up(const Light& light, uint32_t number, const Met& met, Film& film,
                        Spawned& spawned) const {
-    const vec3 arriving = met.weight * direct_light(light, met.surface);
+    const vec3 arriving = float(light_stride_) * met.weight * direct_light(light, met.surface);
     if (arriving == vec3(0))
         return;
     if (!shadows_ || light.shadowless) {

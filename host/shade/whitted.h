@@ -7,6 +7,7 @@
 #include "core/system/log.h"
 #include "host/shade/integrator.h"
 #include "host/shade/shade.h"
+#include "host/shade/surface/media.h"
 
 #include <cstdint>
 #include <span>
@@ -31,8 +32,10 @@ public:
     /// max_depth: reflections and refractions in a row, below 2^16; the last surface shows its own
     /// color alone. up: of the background, unit length. The scene must outlive it, and its lights
     /// must be placed. bounced: the scene's diffuse light, which must outlive it; null: none.
+    /// light_stride: a path asks every so many-th light, which counts for as many; its sample says
+    /// which ones, so that so many samples in a row have asked all.
     Whitted(const Scene& scene, const vec3& up, uint32_t max_depth, bool shadows,
-            const BouncedLight* bounced = nullptr);
+            const BouncedLight* bounced = nullptr, uint32_t light_stride = 1);
 
     void shade(std::span<const Ray> rays, std::span<const Path> paths, std::span<const Hit> hits,
                Film& film, Spawned& spawned) const override;
@@ -42,6 +45,12 @@ public:
 private:
     struct Met;
     void dim_by_fog(const Ray& ray, const Hit& hit, Path& path, Film& film) const;
+    void dim_by_media(const Ray& ray, const Hit& hit, Path& path, Film& film,
+                      Spawned& spawned) const;
+    std::span<const Medium> media_before(const Ray& ray, const Path& path, const Hit& hit) const;
+    void scatter(const ScatteringPlace& from, const dvec3& way, const Path& path, Film& film,
+                 Spawned& spawned) const;
+    uint32_t inside_behind(const Path& path, const Met& met, bool goes_through) const;
     Met meet(const Ray& ray, const Path& path, const Hit& hit, Spawned& spawned) const;
     void light_up(const Light& light, uint32_t number, const Met& met, Film& film,
                   Spawned& spawned) const;
@@ -51,7 +60,9 @@ private:
     const uint32_t max_depth_;
     const bool shadows_;
     const BouncedLight* const bounced_;
+    const uint32_t light_stride_;
     const bool light_may_pass_;
+    const bool has_media_;
 };
 
 } // namespace ovc

@@ -260,6 +260,39 @@ TEST(Whitted, TotalReflectionKeepsAllTheLight) {
     EXPECT_EQ(pixel.r, 0);
 }
 
+/// Returns the red of a pixel behind a clear box that the media fill, 2 long along the view.
+static float seen_through(const std::vector<Medium>& media, bool lamp) {
+    Scene scene;
+    Material clear;
+    clear.transmission = 1;
+    clear.media = media;
+    add_box(scene, clear, {-1, -1, -1}, {1, 1, 1});
+    scene.materials.push_back({"blocker"});
+    scene.add_mesh("blocker", 1, quad({-2, 4, 2}, {2, 4, 2}, {2, 4, 0}, {-2, 4, 0}));
+    if (lamp)
+        scene.lights = {{{0, 1000, 0}, vec3(std::numbers::pi_v<float>)}};
+    scene.may_add_light = false;
+    scene.background = {vec3(0.5f), vec3(0.5f)};
+    Camera camera;
+    camera.eye = {0, 0, 9};
+    camera.fov_degrees = 0.01;
+    return render(scene, camera).pixels[0].r;
+}
+
+TEST(Whitted, MediaFillWhatTheirSurfaceEncloses) {
+    const float empty = seen_through({}, false);
+    Medium dark, bright, misty;
+    dark.absorption = vec3(0.3f);
+    bright.emission = vec3(0.1f);
+    misty.scattering = vec3(0.1f);
+    misty.extinction = 0;
+    EXPECT_NEAR(seen_through({dark}, false), empty * std::exp(-0.6f), 1e-4);
+    EXPECT_NEAR(seen_through({bright}, false), empty + 0.2f, 1e-4);
+    EXPECT_NEAR(seen_through({misty}, true) - seen_through({}, true), 0.1f, 0.002)
+        << "half of the way is in shadow";
+    EXPECT_NEAR(seen_through({misty}, false), empty, 1e-6);
+}
+
 TEST(Whitted, BatchSizeDoesNotChangeAPixelThroughSplittingRays) {
     const Scene scene = room_with_box({"glass", vec3(0.2f), 0.45f, 0.5f, {1, 0.9f, 0.8f}, 1.5});
     RenderOptions options;

@@ -41,11 +41,12 @@ struct Inherited {
     dmat4 in_solid{1};                // to the space of the solid that contains the object
     const Texture* texture = nullptr; // null: the scene's default
     dmat4 texture_placed{1};          // applied after the texture's own transformation
-    const Interior* interior = nullptr;
+    PlacedInterior interior;
     const Texture* inside = nullptr; // of the inner sides, with the placing of `texture`
     uint32_t seen_by = kSeenByAll;
     bool uv_mapping = false;
     bool inverse = false;
+    bool hollow = false;
 };
 
 /// Returns whether the object's triangles stand for a surface that has their normals. Those of a
@@ -135,9 +136,12 @@ private:
         from.texture_placed = object.texture ? from.placed : from.texture_placed;
         from.texture = object.texture ? &*object.texture : from.texture;
         from.inside = object.inside_texture ? &*object.inside_texture : from.inside;
+        if (object.interior)
+            from.interior = {&*object.interior, from.placed};
+        from.hollow = from.hollow || object.hollow;
+        from.interior.hollow = from.hollow;
         from.placed = from.placed * object.placed;
         from.in_solid = from.in_solid * object.placed;
-        from.interior = object.interior ? &*object.interior : from.interior;
         from.seen_by &= object.seen_by;
         from.uv_mapping = from.uv_mapping || object.uv_mapping;
         from.inverse = from.inverse != object.inverse;
@@ -547,12 +551,13 @@ void flatten(const std::vector<ObjectPtr>& objects, const Look& look, Scene& sce
             batches.add(facets, p);
         }
     add_solids(gatherer.solids, segments, world_of(box, look), batches);
-    batches.give_to(scene);
-
+    // Where a plane and another surface are in one place, the first mesh is seen: povray's planes
+    // hide what lies in them.
     const Box world = world_of(box, look);
     for (const Placed& p : placed)
         if (std::holds_alternative<PlaneShape>(p.object->shape))
             add_plane(p, gatherer.holes, chunk_origin(world, 2), reach_of(world), scene);
+    batches.give_to(scene);
 }
 
 Box moved(const Box& box, const dmat4& by) {
@@ -584,6 +589,9 @@ struct ObjectAlone {
 
 } // namespace
 
+/// Each ray asks all exact parts of an object, so that further ones are cut into triangles.
+static constexpr size_t kMaxExactParts = 256;
+
 CutObject cut_object(const Object& object, uint64_t max_triangles) {
     const ObjectAlone alone(object, max_triangles);
     const Gatherer& gatherer = alone.gatherer;
@@ -596,6 +604,11 @@ CutObject cut_object(const Object& object, uint64_t max_triangles) {
             if (const std::optional<PlaneShape> in_world = placed_plane(*plane, p))
                 cut.planes.push_back(*in_world);
         if (const Shape* shape = std::get_if<Shape>(&p.object->shape)) {
+            if (shape->exact && !p.inverse && cut.exact.size() < kMaxExactParts) {
+                cut.exact.push_back({*shape->exact, glm::inverse(p.placed)});
+                cut.exact.back().shape.open = p.object->open;
+                continue;
+            }
             facets.clear();
             shape->cut(segments, p.object->open, facets);
             add_finite(facets, p, cut.facets);

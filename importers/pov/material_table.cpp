@@ -38,14 +38,14 @@ static void tell_of_stops(const PatternPtr& pattern, const Look& look) {
 }
 
 uint32_t MaterialTable::number(const Texture& texture, const Color& color, const dmat4& placed,
-                               const Interior* interior, const Texture* inside) {
+                               const PlacedInterior& interior, const Texture* inside) {
     for (const Notes* notes : {&texture.notes, &texture.pigment.notes, &texture.surface.notes,
                                &texture.mix.notes, &texture.normal.pattern.notes})
         tell_all(*notes, look_);
     tell_of_stops(texture.pigment.pattern, look_);
     tell_of_stops(texture.normal.pattern.pattern, look_);
-    if (interior)
-        tell_all(interior->notes, look_);
+    if (interior.interior)
+        tell_all(interior.interior->notes, look_);
     ovc::Material material = made(texture, color, placed, interior);
     if (inside) {
         material.inside = number(*inside, inside->pigment.color, placed, interior);
@@ -84,7 +84,7 @@ bool MaterialTable::has_part_on_uv(const ovc::Material& material) const {
 }
 
 /// Makes the material a mix of those of the stops of the texture's map.
-void MaterialTable::mix(const Texture& texture, const dmat4& placed, const Interior* interior,
+void MaterialTable::mix(const Texture& texture, const dmat4& placed, const PlacedInterior& interior,
                         ovc::Material& material) {
     const PatternMap& map = *texture.mix.pattern;
     const dmat4 within = placed * texture.mix.placed;
@@ -123,8 +123,30 @@ Bump MaterialTable::bump(const Normal& normal, const dmat4& placed) {
     return made;
 }
 
+Medium MaterialTable::medium(const Media& media, const dmat4& placed) {
+    tell_all(media.notes, look_);
+    Medium made = media.medium;
+    for (const Pigment& density : media.densities) {
+        tell_all(density.notes, look_);
+        tell_of_stops(density.pattern, look_);
+        made.densities.push_back(textures_.of_density(density, placed));
+    }
+    return made;
+}
+
+/// Gives the material what an interior says.
+void MaterialTable::fill(const PlacedInterior& interior, ovc::Material& material) {
+    const Interior& in = *interior.interior;
+    if (in.absorption.power >= 0 && in.absorption.distance > 0)
+        material.absorption = in.absorption;
+    material.caustics = in.caustics;
+    for (const Media& media : in.media)
+        if (interior.hollow)
+            material.media.push_back(medium(media, interior.placed));
+}
+
 ovc::Material MaterialTable::made(const Texture& texture, const Color& color, const dmat4& placed,
-                                  const Interior* interior) {
+                                  const PlacedInterior& interior) {
     ovc::Material material;
     const Pigment& pigment = texture.pigment;
     const bool varies = pigment.pattern && !texture.mix.pattern;
@@ -149,13 +171,11 @@ ovc::Material MaterialTable::made(const Texture& texture, const Color& color, co
         if (material.transmission > 0)
             material.filter = glm::clamp(through / material.transmission, 0.0f, 1.0f);
     }
-    const double ior = texture.surface.ior.value_or(interior ? interior->ior : 1);
+    const double ior = texture.surface.ior.value_or(interior.interior ? interior.interior->ior : 1);
     material.ior = is_usable_ior(ior) ? ior : 1;
     material.finish = finish;
-    if (interior && interior->absorption.power >= 0 && interior->absorption.distance > 0)
-        material.absorption = interior->absorption;
-    if (interior)
-        material.caustics = interior->caustics;
+    if (interior.interior)
+        fill(interior, material);
     if (texture.normal.pattern.pattern)
         material.bump = bump(texture.normal, placed);
     if (texture.mix.pattern)

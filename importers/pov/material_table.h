@@ -11,16 +11,24 @@ namespace ovc::pov {
 
 void tell_all(const Notes& notes, const Look& look);
 
+/// An interior, the transformation that brings its media into the world, and whether the object is
+/// hollow, without which it has no media.
+struct PlacedInterior {
+    const Interior* interior = nullptr; // null: none
+    dmat4 placed{1};
+    bool hollow = false;
+};
+
 /// Adds materials to a scene. Equal ones are added once.
 class MaterialTable {
 public:
     MaterialTable(const Look& look, Scene& scene) : look_(look), scene_(scene), textures_(scene) {}
 
     /// Returns an index into Scene::materials. color: of the texture's pigment, perhaps without its
-    /// holes. placed: brings the texture into the world. interior: may be null. inside: the texture
-    /// of the inner side, or null where it is the same.
+    /// holes. placed: brings the texture into the world. inside: the texture of the inner side, or
+    /// null where it is the same.
     uint32_t number(const Texture& texture, const Color& color, const dmat4& placed,
-                    const Interior* interior, const Texture* inside = nullptr);
+                    const PlacedInterior& interior, const Texture* inside = nullptr);
 
     /// As TextureTable::set_has_uv.
     void set_has_uv(bool has_uv) { textures_.set_has_uv(has_uv); }
@@ -28,14 +36,18 @@ public:
     /// Returns whether a part of the material lies on texture coordinates.
     bool is_on_uv(uint32_t material) const { return on_uv_[material]; }
 
+    /// Returns the medium as it lies in the world.
+    Medium medium(const Media& media, const dmat4& placed);
+
     /// Returns the bump of a normal that has a pattern.
     Bump bump(const Normal& normal, const dmat4& placed);
 
 private:
     ovc::Material made(const Texture& texture, const Color& color, const dmat4& placed,
-                       const Interior* interior);
-    void mix(const Texture& texture, const dmat4& placed, const Interior* interior,
+                       const PlacedInterior& interior);
+    void mix(const Texture& texture, const dmat4& placed, const PlacedInterior& interior,
              ovc::Material& material);
+    void fill(const PlacedInterior& interior, ovc::Material& material);
 
     bool has_part_on_uv(const ovc::Material& material) const;
 

@@ -4,6 +4,7 @@
 
 #include "core/box.h"
 #include "core/scene.h"
+#include "importers/pov/shapes/exact_shape.h"
 #include "importers/pov/shapes/facets.h"
 #include "importers/pov/values/shared_function.h"
 #include "importers/pov/values/value.h"
@@ -19,7 +20,8 @@ struct Shape {
     double fixed = 0;
     double per_square = 0; // x segments^2
     double per_segment = 0;
-    std::optional<Box> box; // bounds the shape; set only where cutting it takes long
+    std::optional<ExactShape> exact; // of round shapes that have formulas
+    std::optional<Box> box;          // bounds the shape; set only where cutting it takes long
 
     double triangles(int segments) const {
         return fixed + segments * (per_segment + segments * per_square);
@@ -75,6 +77,7 @@ struct Object {
     uint32_t seen_by = kSeenByAll; // as no_shadow, no_image and no_reflection leave it
     bool uv_mapping = false;       // of its own texture and those of its parts
     bool inverse = false;
+    bool hollow = false; // media may fill it
     bool open = false;
     bool has_inside = true; // false for a sheet, which cannot take anything away from a solid
 };

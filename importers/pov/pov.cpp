@@ -5,6 +5,7 @@
 #include "importers/pov/flatten.h"
 #include "importers/pov/material_table.h"
 #include "importers/pov/parse/parse_camera.h"
+#include "importers/pov/parse/parse_media.h"
 #include "importers/pov/parse/parse_object.h"
 #include "importers/pov/parse/parse_sky.h"
 #include "importers/pov/parse/parse_value.h"
@@ -105,10 +106,13 @@ public:
         scene.background.tints = !look_.before_3_7;
         if (scene.radiosity && !look_.before_3_7)
             look_.ambient_light = vec3(0); // as povray since 3.7
+        take_rays(*camera_, scene);
         if (camera_->normal.pattern.pattern)
             scene.camera->bump = MaterialTable(look_, scene).bump(camera_->normal, dmat4(1));
         if (sky_)
             add_sky(*sky_, look_, scene);
+        for (const Media& media : air_)
+            scene.background.media.push_back(MaterialTable(look_, scene).medium(media, dmat4(1)));
         flatten(objects_, look_, scene);
         scene.moves = reader_.moves;
         scene.omissions = reader_.omissions();
@@ -133,7 +137,9 @@ private:
                 scene.background.fogs.push_back(fog); // as povray, which draws none of no distance
         } else if (reader_.take("radiosity")) {       // as before 3.5
             scene.radiosity = parse_radiosity(reader_);
-        } else if (token.is("media") || token.is("rainbow") || token.is("photons")) {
+        } else if (reader_.take("media")) {
+            air_.push_back(parse_media(reader_));
+        } else if (token.is("rainbow") || token.is("photons")) {
             reader_.next();
             reader_.omit(token.name->text, token.place, token.name->text + " is left out");
             skip_braces(reader_, token.name->text);
@@ -150,6 +156,18 @@ private:
                                      "such as camera",
                                      found(token), is_undeclared ? ", which is not declared" : ""));
         }
+    }
+
+    /// Gives the scene the faces of its camera, and the number of rays that camera takes a pixel.
+    static void take_rays(const CameraValue& camera, Scene& scene) {
+        if (scene.camera->lens)
+            scene.samples = camera.blur_samples;
+        if (!camera.faces)
+            return;
+        scene.samples = camera.face_rays;
+        scene.faces = *camera.faces;
+        scene.faces->ahead = camera.location.z;
+        scene.faces->backwards = camera.direction.z < 0;
     }
 
     void parse_background(Scene& scene) {
@@ -205,6 +223,7 @@ private:
     Reader reader_;
     Look look_;
     std::optional<SkySphere> sky_;
+    std::vector<Media> air_; // of the whole scene
     bool gamma_given_ = false;
     uint32_t trace_level_ = 5;
     std::vector<ObjectPtr> objects_;

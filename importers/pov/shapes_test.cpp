@@ -37,6 +37,7 @@ const Solid kSolids[] = {
      "prism { 0, 2, 10, <0, 0>, <4, 0>, <4, 4>, <0, 4>, <0, 0>, <1, 1>, <1, 3>, <3, 3>, <3, 1>, "
      "<1, 1> }",
      24},
+    {"sphere_sweep", "sphere_sweep { linear_spline 2, 0, 1, 2*y, 1 }", (4 / 3.0 + 2) * pi},
     {"scaled", "sphere { 0, 1 scale <1, 2, -3> rotate <10, 20, 30> translate 5 }", 8 * pi},
     {"inverse_twice", "box { 0, 1 inverse inverse }", 1},
     {"box_minus_boxes",
@@ -123,6 +124,16 @@ TEST(PovShapes, FlatOnesHaveTheirArea) {
     EXPECT_NEAR(area("triangle { 0, 2*x, 2*y }"), 2, 1e-9);
 }
 
+TEST(PovShapes, ParametricOnesEndAtTheirContainer) {
+    const std::string plane = "parametric { function { u } function { v } function { 0 } ";
+    EXPECT_NEAR(area(plane + "<0, 0>, <2, 0.5> }"), 0.5, 1e-6);
+    EXPECT_NEAR(area(plane + "<-1, -1>, <1, 1> contained_by { sphere { 0, 1 } } }"), pi, 0.01);
+    EXPECT_NEAR(area("parametric { function { cos(u) * cos(v) } function { sin(v) }, "
+                     "function { sin(u) * cos(v) }, <0, -pi/2>, <2*pi, pi/2> "
+                     "contained_by { box { -2, <2, 0, 2> } } }"),
+                2 * pi, 0.01);
+}
+
 TEST(PovShapes, ClippedOnesAreOpen) {
     EXPECT_NEAR(area("sphere { 0, 1 clipped_by { plane { y, 0 } } }"), 2 * pi, 0.01);
     EXPECT_NEAR(area("box { 0, 2 clipped_by { box { 1, 3 } } translate 5 }"), 3, 1e-5);
@@ -202,8 +213,8 @@ TEST(PovShapes, PlanesKeepTheirPlaceNearTheScene) {
     const Result<Scene> scene =
         parse_pov("sphere { <7, 8, 9>, 1 } plane { <1, 2, 3>, 4 }", "x.pov", {});
     ASSERT_TRUE(scene);
-    ASSERT_EQ(scene->meshes.back().name, "plane");
-    const Chunk& plane = scene->soup.chunks.back();
+    ASSERT_EQ(scene->meshes.front().name, "plane") << "it hides what lies in it";
+    const Chunk& plane = scene->soup.chunks.front();
     const dvec3 normal = glm::normalize(dvec3(1, 2, 3));
     EXPECT_NEAR(glm::dot(plane.origin(), normal), 4, 1e-12);
     for (uint32_t prim = 0; prim < plane.size(); ++prim) {

@@ -134,6 +134,12 @@ PlacedTexture TextureTable::of_pigment(const Pigment& pigment, const dmat4& plac
     return of_pigments(*pigment.pattern, placed * pigment.placed);
 }
 
+PlacedTexture TextureTable::of_density(const Pigment& density, const dmat4& placed) {
+    if (density.pattern)
+        return of_pigments(*density.pattern, placed * density.placed);
+    return placed_texture(number(density), dmat4(1));
+}
+
 PlacedTexture TextureTable::of_pigments(const PatternMap& map, const dmat4& placed) {
     return placed_texture(number(map), placed);
 }

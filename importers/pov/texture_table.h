@@ -27,6 +27,9 @@ public:
     void set_has_uv(bool has_uv) { has_uv_ = has_uv; }
     /// Returns whether a part of a texture that was added lies on texture coordinates.
     bool is_on_uv(uint32_t texture) const { return on_uv_[texture]; }
+    /// Does the same for the color of a density.
+    PlacedTexture of_density(const Pigment& density, const dmat4& placed);
+
     /// Does the same for a mix of materials, one for each stop.
     PlacedTexture of_materials(const PatternMap& map, std::span<const uint32_t> materials,
                                const dmat4& placed);

@@ -51,6 +51,14 @@ void meet_plane(const PlaneShape& plane, const dvec3& from, const dvec3& way, Me
         nearest = {t, plane.normal};
 }
 
+void meet_exact(const ExactPart& part, const dvec3& from, const dvec3& way, Meeting& nearest) {
+    const dvec3 there(part.to_shape * dvec4(from, 1)), along(part.to_shape * dvec4(way, 0));
+    for_each_meeting(part.shape, there, along, [&](const ExactMeeting& at) {
+        if (at.t > kMinDistance && at.t < nearest.distance)
+            nearest = {at.t, glm::transpose(dmat3(part.to_shape)) * at.normal};
+    });
+}
+
 /// Returns whether the ray meets the box before `limit`. A way of 0 along an axis gives infinities,
 /// and NaN for a ray in the plane of a side; the comparisons then count the box as met.
 bool meets(const Box& box, const dvec3& from, const dvec3& inverse_way, double limit) {
@@ -112,6 +120,8 @@ Meeting TraceTarget::first_meeting(const dvec3& origin, const dvec3& direction) 
     Meeting nearest;
     for (const PlaneShape& plane : object_.planes)
         meet_plane(plane, origin, direction, nearest);
+    for (const ExactPart& part : object_.exact)
+        meet_exact(part, origin, direction, nearest);
     for_each_near(origin, direction, nearest.distance, [&](const Corner* corners) {
         meet_triangle(corners, origin, direction, nearest);
     });
@@ -121,6 +131,9 @@ Meeting TraceTarget::first_meeting(const dvec3& origin, const dvec3& direction) 
 bool TraceTarget::contains(const dvec3& point) const {
     for (const PlaneShape& plane : object_.planes)
         if (glm::dot(plane.normal, point) < plane.distance)
+            return true;
+    for (const ExactPart& part : object_.exact)
+        if (is_within(part.shape, dvec3(part.to_shape * dvec4(point, 1))))
             return true;
     // No edge of a usual scene runs along this way.
     const dvec3 way = glm::normalize(dvec3(0.2718281828, 0.5772156649, 0.7853981634));

@@ -15,17 +15,25 @@ struct Meeting {
     dvec3 normal{0};                                           // of any length
 };
 
-/// An object cut into triangles, in its parent's space.
+/// A shape that is known exactly, and how it is placed.
+struct ExactPart {
+    ExactShape shape;
+    dmat4 to_shape{1}; // from the object's parent's space
+};
+
+/// An object in its parent's space, as triangles where it has no formulas.
 struct CutObject {
     Facets facets; // with finite corners
     std::vector<PlaneShape> planes;
+    std::vector<ExactPart> exact;
 };
 
 /// Returns the object cut as finely as for a picture of it alone. Throws ParseError where it would
 /// have more than max_triangles triangles. flatten.cpp defines it.
 CutObject cut_object(const Object& object, uint64_t max_triangles);
 
-/// An object's triangles under a tree of boxes, and its planes. Several threads may trace it.
+/// An object's triangles under a tree of boxes, its planes and its exact parts. Several threads may
+/// trace it.
 class TraceTarget {
 public:
     explicit TraceTarget(CutObject object);

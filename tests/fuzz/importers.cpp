@@ -180,6 +180,7 @@ Scene scene_with_everything() {
     scene.camera = camera;
     scene.size = ImageSize{320, 240};
     scene.max_depth = 7;
+    scene.samples = 9;
     scene.background.zenith = vec3(0, 0, 1);
     scene.exposure = 0.5f;
     scene.gamma = 2.2;

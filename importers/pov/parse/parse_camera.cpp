@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "importers/pov/parse/parse_camera.h"
 
-#include "importers/file/text.h"
 #include "importers/pov/parse/texture.h"
 #include "importers/pov/values/transform.h"
 
@@ -49,6 +48,8 @@ void apply(CameraValue& camera, const dmat4& m) {
     for (dvec3* v : {&camera.direction, &camera.up, &camera.right})
         *v = dvec3(m * dvec4(*v, 0));
     camera.location = dvec3(m * dvec4(camera.location, 1));
+    if (camera.focal_point)
+        camera.focal_point = dvec3(m * dvec4(*camera.focal_point, 1));
 }
 
 /// Takes a projection such as `fisheye` or `cylinder 2`. Returns false where none is next.
@@ -68,6 +69,21 @@ bool take_bend(Reader& reader, CameraValue& camera) {
             return true;
         }
     return false;
+}
+
+/// Takes a part of focal blur. Those that say when povray takes fewer rays are skipped.
+bool take_lens_part(Reader& reader, CameraValue& camera) {
+    if (reader.take("aperture"))
+        camera.aperture = parse_float(reader);
+    else if (reader.take("focal_point"))
+        camera.focal_point = parse_vector(reader);
+    else if (reader.take("blur_samples")) { // MAX or MIN, MAX
+        camera.blur_samples = uint32_t(parse_int(reader, 0, 1 << 16, "blur_samples"));
+        if (reader.take(','))
+            camera.blur_samples = uint32_t(parse_int(reader, 0, 1 << 16, "blur_samples"));
+    } else
+        return false;
+    return true;
 }
 
 } // namespace
@@ -106,17 +122,14 @@ CameraValue parse_camera(Reader& reader) {
             camera.orthographic = false;
         else if (reader.take("normal"))
             camera.normal = parse_normal(reader, {});
+        else if (take_lens_part(reader, camera))
+            ;
+        else if (reader.take("mesh_camera"))
+            parse_mesh_camera(reader, camera);
         else if (const auto m = take_transform(reader))
             placed = *m * placed;
         else if (token.kind == TokenKind::Name) {
             reader.next();
-            if (token.is("mesh_camera"))
-                reader.omit("projection", token.place,
-                            fmt::format("the camera {} is taken for a perspective one",
-                                        ovc::quoted(token.name->text)));
-            else if (token.is("aperture"))
-                reader.omit(token.name->text, token.place,
-                            fmt::format("the camera's {} is left out", token.name->text));
             skip_arguments(reader);
         } else if (!reader.take(','))
             reader.fail_here("'}' or a part of a camera");
@@ -129,6 +142,19 @@ CameraValue parse_camera(Reader& reader) {
         set_angle(reader, camera, *angle);
     apply(camera, placed);
     return camera;
+}
+
+/// Returns the lens of focal blur, as wide as half of the aperture, whose focus lies in the plane
+/// of the focal point.
+static Lens focal_blur_of(const CameraValue& c) {
+    const double depth = glm::dot(c.direction, c.direction);
+    const dvec3 point = c.focal_point.value_or(c.location + c.direction);
+    const double focus = depth > 0 ? glm::dot(point - c.location, c.direction) / depth : 1;
+    const auto across = [&](const dvec3& side) {
+        const double length = glm::length(side);
+        return length > 0 ? 0.25 * c.aperture / length * side : dvec3(0);
+    };
+    return {across(c.right), across(c.up), focus > 0 ? focus : 1};
 }
 
 Camera camera_of(const CameraValue& c) {
@@ -147,6 +173,9 @@ Camera camera_of(const CameraValue& c) {
         camera.window->right *= scale;
         camera.window->up *= scale;
     }
+    camera.by_faces = c.faces != nullptr;
+    if (c.blur_samples > 0 && c.aperture > 0 && !c.faces)
+        camera.lens = focal_blur_of(c);
     camera.up = glm::length(c.sky) > 0 ? c.sky : c.up;
     const double depth = glm::length(c.direction);
     camera.target = c.location + c.direction * (c.distance && depth > 0 ? *c.distance / depth : 1);

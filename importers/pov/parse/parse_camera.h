@@ -10,6 +10,9 @@ namespace ovc::pov {
 /// Reads a camera from its { on.
 CameraValue parse_camera(Reader& reader);
 
+/// Reads the block of a mesh_camera into the camera (mesh_camera.cpp).
+void parse_mesh_camera(Reader& reader, CameraValue& camera);
+
 /// Returns the camera as hosts get it: as POV-Ray's window, and as eye, target and field of view.
 Camera camera_of(const CameraValue& camera);
 

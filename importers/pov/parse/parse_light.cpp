@@ -104,10 +104,14 @@ bool parse_other_part(Reader& reader, Words& words, LightSource& source) {
         reader.omit("area_light orient", token.place, "orient of an area light is left out");
     else if (reader.take("area_illumination"))
         source.illuminates = parse_flag(reader);
-    else if (reader.take("jitter") || reader.take("media_interaction") ||
-             reader.take("media_attenuation"))
+    else if (reader.take("media_interaction"))
+        source.light.lights_media = parse_flag(reader);
+    else if (reader.take("jitter"))
         parse_flag(reader);
-    else if (reader.take("adaptive"))
+    else if (reader.take("media_attenuation")) {
+        if (parse_flag(reader))
+            reader.omit("media_attenuation", token.place, "media_attenuation is left out");
+    } else if (reader.take("adaptive"))
         parse_float(reader);
     else
         return false;

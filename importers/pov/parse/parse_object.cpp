@@ -39,11 +39,13 @@ const std::unordered_map<std::string_view, ParseShape> kShapes = {
     {"bicubic_patch", parse_bicubic_patch},
     {"text", parse_text_shape},
     {"height_field", parse_height_field},
-    {"julia_fractal", parse_julia_fractal}};
+    {"julia_fractal", parse_julia_fractal},
+    {"parametric", parse_parametric},
+    {"sphere_sweep", parse_sphere_sweep}};
 
 /// Shapes that have no inside.
-const std::unordered_set<std::string_view> kSheets = {"disc", "triangle", "smooth_triangle",
-                                                      "polygon", "bicubic_patch"};
+const std::unordered_set<std::string_view> kSheets = {"disc",    "triangle",      "smooth_triangle",
+                                                      "polygon", "bicubic_patch", "parametric"};
 
 using ParseWhole = void (*)(Reader&, Object&);
 void parse_plane(Reader& reader, Object& object);
@@ -65,12 +67,10 @@ const std::unordered_map<std::string_view, ParseWhole> kWholes = {
     {"blob", parse_blob},
     {"cubic", parse_polynomial},
     {"isosurface", parse_isosurface},
-    {"parametric", parse_refused},
     {"poly", parse_polynomial},
     {"polynomial", parse_refused},
     {"quadric", parse_quadric},
-    {"quartic", parse_polynomial},
-    {"sphere_sweep", parse_refused}};
+    {"quartic", parse_polynomial}};
 
 void parse_plane(Reader& reader, Object& object) {
     PlaneShape plane;
@@ -199,8 +199,10 @@ bool parse_switch(Reader& reader, Object& object) {
         object.inverse = !object.inverse;
     else if (reader.take("open"))
         object.open = parse_flag(reader);
-    else if (reader.take("hollow") || reader.take("sturm") || reader.take("hierarchy") ||
-             reader.take("split_union") || reader.take("no_radiosity"))
+    else if (reader.take("hollow"))
+        object.hollow = parse_flag(reader);
+    else if (reader.take("sturm") || reader.take("hierarchy") || reader.take("split_union") ||
+             reader.take("no_radiosity"))
         parse_flag(reader);
     else
         return false;
@@ -221,6 +223,8 @@ void place(Object& object, const dmat4& by) {
         place(*object.texture, by);
     if (object.inside_texture)
         place(*object.inside_texture, by);
+    if (object.interior)
+        place(*object.interior, by);
     for (std::vector<ObjectPtr>* list : {&object.clips, &object.bounds})
         for (ObjectPtr& other : *list) {
             auto moved = std::make_shared<Object>(*other); // other objects may share it

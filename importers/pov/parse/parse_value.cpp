@@ -3,6 +3,7 @@
 
 #include "importers/file/text.h"
 #include "importers/pov/parse/parse_camera.h"
+#include "importers/pov/parse/parse_media.h"
 #include "importers/pov/parse/parse_object.h"
 #include "importers/pov/parse/parse_sky.h"
 #include "importers/pov/parse/pattern.h"
@@ -117,9 +118,9 @@ const std::unordered_map<std::string_view, ParseValue> kKinds = {
      [](Reader& r) -> Value {
          return ColorMap{{}, parse_slope_map(r)};
      }},
-    {"density", parse_opaque},
-    {"density_map", parse_opaque},
-    {"media", parse_opaque},
+    {"density", [](Reader& r) -> Value { return parse_density(r); }},
+    {"density_map", [](Reader& r) -> Value { return parse_map(r, MapOf::Pigments); }},
+    {"media", [](Reader& r) -> Value { return parse_media(r); }},
     {"fog", [](Reader& r) -> Value { return parse_fog(r); }},
     {"rainbow", parse_opaque},
     {"sky_sphere", [](Reader& r) -> Value { return parse_sky_sphere(r); }}};
@@ -212,7 +213,7 @@ std::string kind_of(const Value& value) {
         "nothing",  "a number",    "a text",      "an object",  "a texture",   "a pigment",
         "a normal", "a finish",    "an interior", "a material", "a color map", "a sky",
         "a fog",    "a transform", "an array",    "a macro",    "a function",  "a spline",
-        "a camera", "a file",      "a block"};
+        "a camera", "a file",      "a media",     "a block"};
     static_assert(std::size(kKindNames) == std::variant_size_v<Value::variant>);
     return kKindNames[value.index()];
 }

@@ -88,8 +88,8 @@ bool is_other_pattern(const Token& token) {
 }
 
 bool is_map(const Token& token) {
-    static constexpr std::string_view kWords[] = {"color_map", "colour_map", "pigment_map",
-                                                  "texture_map", "normal_map"};
+    static constexpr std::string_view kWords[] = {"color_map",   "colour_map", "pigment_map",
+                                                  "texture_map", "normal_map", "density_map"};
     return is_one_of(token, kWords);
 }
 

@@ -2,6 +2,7 @@
 #include "importers/pov/parse/texture.h"
 
 #include "importers/file/text.h"
+#include "importers/pov/parse/parse_media.h"
 #include "importers/pov/parse/pattern.h"
 #include "importers/pov/pictures/image_map.h"
 #include "importers/pov/values/transform.h"
@@ -207,6 +208,8 @@ Interior parse_interior(Reader& reader, const Interior& base) {
             interior.caustics = std::max(0.0f, float(parse_float(reader)));
         else if (reader.take("fade_color") || reader.take("fade_colour"))
             interior.absorption.color = parse_color(reader).rgb;
+        else if (reader.take("media"))
+            interior.media.push_back(parse_media(reader));
         else {
             const Token token = reader.next();
             if (!is_word(token))
@@ -238,6 +241,8 @@ Material parse_material(Reader& reader) {
                 place(*material.inside, *m);
             if (material.texture)
                 place(*material.texture, *m);
+            if (material.interior)
+                place(*material.interior, *m);
         } else
             reader.fail_here("a part of a material");
     }
@@ -384,6 +389,12 @@ void place(Texture& texture, const dmat4& by) {
         place(under, by);
         texture.under = std::make_shared<const Texture>(std::move(under));
     }
+}
+
+void place(Interior& interior, const dmat4& by) {
+    for (Media& media : interior.media)
+        for (Pigment& density : media.densities)
+            density.placed = by * density.placed;
 }
 
 Texture layered(const Texture& upper, const Texture& lower) {

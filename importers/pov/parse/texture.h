@@ -25,6 +25,8 @@ std::vector<SlopeStop> parse_slope_map(Reader& reader);
 Texture layered(const Texture& upper, const Texture& lower);
 /// Moves the texture with all its layers.
 void place(Texture& texture, const dmat4& by);
+/// Moves the interior's media.
+void place(Interior& interior, const dmat4& by);
 
 /// Returns the note "WORD of a finish is left out", where `of` is "a finish".
 const Note* left_out(Reader& reader, std::string_view of, const Token& word);

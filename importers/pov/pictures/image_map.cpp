@@ -64,6 +64,7 @@ struct MapWords {
     bool smooth = false;
     int type = 0; // 0: the picture lies on x and y
     std::optional<double> bump_size;
+    bool use_index = false; // the value is the number of a color in the table, not its brightness
 
     /// Returns the projection of the type; nothing for one that POV-Ray does not have.
     std::optional<ImageTexture::Projection> projection() const {
@@ -102,6 +103,10 @@ MapWords parse_map_words(Reader& reader, const Place& start, bool of_materials =
             words.type = int(parse_float(reader));
         else if (reader.take("bump_size"))
             words.bump_size = parse_float(reader);
+        else if (reader.take("use_index"))
+            words.use_index = true;
+        else if (reader.take("use_color") || reader.take("use_colour"))
+            words.use_index = false;
         else if (reader.next().kind == TokenKind::End)
             reader.fail(start, "found no '}' to the block of a picture");
     }
@@ -178,14 +183,9 @@ const Note* not_drawn(Reader& reader, const Token& word, const Place& at, const 
                        fmt::format("{}: the {} is left out", why, word.name->text));
 }
 
-/// Returns the picture of a material_map of `count` textures as MaterialValues does.
-ValueMap values_of_materials(Reader& reader, const Token& word, const NamedPicture& named,
-                             const MapWords& words, size_t count) {
-    assert(count > 0);
-    if (!named.picture || !words.projection())
-        return {.why_not = not_drawn(reader, word, named.start,
-                                     named.picture ? "its map_type is not known"
-                                                   : named.picture.error().message)};
+/// Returns a texture of the numbers of the picture's colors in its table, or of its reds without
+/// one, modulo `count`, as codes of 8 bits.
+Result<ImageMap> image_of_indices(const NamedPicture& named, const MapWords& words, size_t count) {
     const Picture& picture = *named.picture;
     std::vector<uint16_t> samples;
     samples.reserve(3 * picture.size());
@@ -197,12 +197,26 @@ ValueMap values_of_materials(Reader& reader, const Token& word, const NamedPictu
     const Result<std::string> png =
         write_png({picture.width, picture.height, 8, samples}, "Overcast");
     if (!png)
-        return {.why_not = not_drawn(reader, word, named.start, png.error().message)};
-    ValueMap map{image_of_codes(named, words)};
-    map.image->image.filter = TexelFilter::Nearest;
-    map.image->contents = std::make_shared<const std::vector<uint8_t>>(png->begin(), png->end());
-    map.image->path += fmt::format(", choosing from {}", count);
+        return png.error();
+    ImageMap map = image_of_codes(named, words);
+    map.image.filter = TexelFilter::Nearest;
+    map.contents = std::make_shared<const std::vector<uint8_t>>(png->begin(), png->end());
+    map.path += fmt::format(", choosing from {}", count);
     return map;
+}
+
+/// Returns the picture of a material_map of `count` textures as MaterialValues does.
+ValueMap values_of_materials(Reader& reader, const Token& word, const NamedPicture& named,
+                             const MapWords& words, size_t count) {
+    assert(count > 0);
+    if (!named.picture || !words.projection())
+        return {.why_not = not_drawn(reader, word, named.start,
+                                     named.picture ? "its map_type is not known"
+                                                   : named.picture.error().message)};
+    Result<ImageMap> image = image_of_indices(named, words, count);
+    if (!image)
+        return {.why_not = not_drawn(reader, word, named.start, image.error().message)};
+    return {std::move(*image)};
 }
 
 } // namespace
@@ -219,6 +233,9 @@ ValueMap parse_value_map(Reader& reader, const Token& word) {
                                 fmt::format("map_type {} is not known", words.type));
     else {
         map.image = image_of_codes(named, words);
+        if (words.use_index && !named.picture->indices.empty())
+            if (Result<ImageMap> image = image_of_indices(named, words, 256); image)
+                map.image = std::move(*image);
         if (flat_only)
             map.image->image.filter = TexelFilter::Nearest; // as povray, which ignores the word
     }

@@ -36,6 +36,12 @@ Shape parse_text_shape(Reader& reader);
 // shape_julia.cpp
 Shape parse_julia_fractal(Reader& reader);
 
+// shape_sphere_sweep.cpp
+Shape parse_sphere_sweep(Reader& reader);
+
+// shape_parametric.cpp
+Shape parse_parametric(Reader& reader);
+
 // shape_patch.cpp
 Shape parse_bicubic_patch(Reader& reader);
 

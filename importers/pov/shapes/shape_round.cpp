@@ -50,7 +50,7 @@ Shape frustum(Reader& reader, const dvec3& base, double base_radius, const dvec3
     const dvec3 axis = cap - base;
     if (!(glm::length(axis) > 0))
         reader.fail(reader.place(), "found a cone or cylinder whose ends are one point");
-    return curved(0, 4, [=](int segments, bool open, Facets& out) {
+    Shape shape = curved(0, 4, [=](int segments, bool open, Facets& out) {
         dvec3 u, v;
         across(axis, u, v);
         const double slant = (base_radius - cap_radius) / glm::dot(axis, axis);
@@ -67,6 +67,8 @@ Shape frustum(Reader& reader, const dvec3& base, double base_radius, const dvec3
             out.add(at(0, 0), at(i + 1, 0), at(i, 0));
         }
     });
+    shape.exact = ExactShape{base, base_radius, cap, cap_radius, /* is_ball= */ false};
+    return shape;
 }
 
 double signed_power(double base, double exponent) {
@@ -83,7 +85,7 @@ Shape parse_sphere(Reader& reader) {
     const dvec3 center = parse_vector(reader);
     reader.take_comma();
     const double radius = std::abs(parse_float(reader));
-    return curved(1, 0, [=](int segments, bool, Facets& out) {
+    Shape shape = curved(1, 0, [=](int segments, bool, Facets& out) {
         add_grid(
             segments, segments / 2,
             [&](int column, int row) -> Corner {
@@ -94,6 +96,8 @@ Shape parse_sphere(Reader& reader) {
             },
             out);
     });
+    shape.exact = ExactShape{center, radius};
+    return shape;
 }
 
 Shape parse_cylinder(Reader& reader) {

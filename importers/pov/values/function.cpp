@@ -314,9 +314,10 @@ private:
     uint32_t called_ = 0; // the depth of the deepest function that it calls
 };
 
-std::vector<std::string> parse_parameters(Reader& reader) {
+/// usual: their names where none are given.
+std::vector<std::string> parse_parameters(Reader& reader, std::vector<std::string> usual) {
     if (!reader.take('('))
-        return {"x", "y", "z"};
+        return usual;
     std::vector<std::string> parameters;
     while (!reader.take(')')) {
         const Token token = reader.next();
@@ -387,9 +388,9 @@ static void parse_pattern_function(Reader& reader, const Token& what, Function& 
     set_program(function, program.take());
 }
 
-Function parse_function(Reader& reader) {
+Function parse_function(Reader& reader, std::vector<std::string> usual) {
     Function function;
-    const std::vector<std::string> parameters = parse_parameters(reader);
+    const std::vector<std::string> parameters = parse_parameters(reader, std::move(usual));
     function.parameters = parameters.size();
     if (!reader.peek().is('{')) { // the grid of an image or a height_field
         function.grid.x = parse_float(reader);

@@ -8,8 +8,9 @@
 
 namespace ovc::pov {
 
-/// Reads `(a, b) { formula }` from behind the word `function`.
-Function parse_function(Reader& reader);
+/// Reads `(a, b) { formula }` from behind the word `function`. usual: the names of the parameters
+/// where none are given.
+Function parse_function(Reader& reader, std::vector<std::string> usual = {"x", "y", "z"});
 
 /// Returns the function's value, a vector for a transform. `name` is the token that calls it, for
 /// messages. Throws ParseError for a function that cannot be called or a scene that takes too long.

@@ -139,9 +139,17 @@ struct PatternMap {
     std::optional<ImageMap> image_map;
 };
 
+/// A media { }, whose densities are in its own space.
+struct Media {
+    Medium medium;
+    std::vector<Pigment> densities;
+    Notes notes;
+};
+
 struct Interior {
     double ior = 1;
     Absorption absorption; // a distance of 0: none
+    std::vector<Media> media;
     float caustics = 0;
     Notes notes;
 };
@@ -163,7 +171,7 @@ struct SkySphere {
     std::vector<Pigment> pigments;
 };
 
-/// A declared value that Overcast does not use: a media, a fog.
+/// A declared value that Overcast does not use: a rainbow.
 struct Opaque {
     std::string kind;
 };
@@ -185,8 +193,13 @@ struct CameraValue {
     bool orthographic = false;
     ImageWindow::Bend bend = ImageWindow::Bend::Flat;
     double vertical_angle = 0;
-    double angle = 0; // of the field of view, in degrees; 0 where the scene gives none
-    Normal normal;    // tilts rays
+    double angle = 0;          // of the field of view, in degrees; 0 where the scene gives none
+    Normal normal;             // tilts rays
+    double aperture = 0;       // of a lens; 0: none
+    uint32_t blur_samples = 0; // rays a pixel through it; 0: everything is sharp
+    std::optional<dvec3> focal_point;
+    std::shared_ptr<const FaceCamera> faces; // of a mesh_camera; null: a window
+    uint32_t face_rays = 1;                  // rays a pixel of those
 };
 
 struct Array {
@@ -232,9 +245,10 @@ struct Function {
 };
 
 /// The value of a variable or of an array's item, which owns it. Macros belong to the reader.
-struct Value : std::variant<std::monostate, Number, std::string, ObjectPtr, Texture, Pigment,
-                            Normal, Surface, Interior, Material, ColorMap, SkySphere, Fog, dmat4,
-                            Array, const Macro*, Function, Spline, CameraValue, DataFile, Opaque> {
+struct Value
+    : std::variant<std::monostate, Number, std::string, ObjectPtr, Texture, Pigment, Normal,
+                   Surface, Interior, Material, ColorMap, SkySphere, Fog, dmat4, Array,
+                   const Macro*, Function, Spline, CameraValue, DataFile, Media, Opaque> {
     using variant::variant;
     using variant::operator=;
 };
