@@ -4,11 +4,9 @@
 #include "plugin/abi/scene.h"
 
 #include "core/build_progress.h"
-#include "core/system/stopwatch.h"
 #include "core/text/format_text.h"
 #include "plugin/abi/config.h"
 #include "plugin/abi/device_call.h"
-#include "plugin/abi/plan_call.h"
 #include "plugin/abi/scene_call.h"
 #include "plugin/abi/struct_size.h"
 

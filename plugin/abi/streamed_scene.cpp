@@ -4,7 +4,6 @@
 #include "core/text/format_text.h"
 #include "plugin/abi/config.h"
 #include "plugin/abi/device_call.h"
-#include "plugin/abi/plan_call.h"
 #include "plugin/abi/scene.h"
 #include "plugin/abi/scene_call.h"
 #include "plugin/abi/struct_size.h"
