@@ -446,20 +446,38 @@ Result<Done> finish_scene_file(const SceneFront& front, const SaveLevels& save_l
     return write_levels(save_levels, out, writer);
 }
 
-uint64_t scene_file_bytes(const Scene& scene, uint64_t levels_bytes) {
-    if (scene.on_disk)
-        return scene.on_disk->file.bytes();
+/// Returns how many blocks of values, each with a checksum, such meshes have.
+static uint64_t blocks_of(std::span<const MeshExtent> extents) {
+    uint64_t blocks = 0;
+    for (const MeshExtent& extent : extents)
+        blocks += blocks_of(extent.corners / 3) + blocks_of(extent.normals / 3) +
+                  blocks_of(extent.uv / 3);
+    return blocks;
+}
+
+static uint64_t file_bytes(const Scene& scene, std::span<const MeshExtent> extents,
+                           uint64_t levels_bytes) {
     constexpr uint64_t kFrame = 1024; // header, table, and the gaps between parts
     ByteWriter fields;
     fields(scene, scene.meshes);
-    uint64_t bytes = kFrame + fields.bytes().size() + levels_bytes;
-    for (const MeshExtent& extent : extents_of(scene))
-        bytes += sizeof(extent) + extent.corners * sizeof(vec3) + extent.normals * sizeof(vec3) +
-                 extent.uv * sizeof(vec2) +
-                 (blocks_of(extent.corners / 3) + blocks_of(extent.normals / 3) +
-                  blocks_of(extent.uv / 3)) *
-                     sizeof(uint64_t);
+    uint64_t bytes = kFrame + fields.bytes().size() + levels_bytes + extents.size_bytes() +
+                     blocks_of(extents) * sizeof(uint64_t);
+    for (const MeshExtent& extent : extents)
+        bytes += (extent.corners + extent.normals) * sizeof(vec3) + extent.uv * sizeof(vec2);
     return bytes;
+}
+
+uint64_t scene_file_bytes(const Scene& scene, uint64_t levels_bytes) {
+    return scene.on_disk ? scene.on_disk->file.bytes()
+                         : file_bytes(scene, extents_of(scene), levels_bytes);
+}
+
+uint64_t scene_file_bytes(const Scene& scene, const TriangleStore& store, uint64_t levels_bytes) {
+    return file_bytes(scene, parts_of(scene, store).extents, levels_bytes);
+}
+
+uint64_t bytes_for_shading(const Scene& scene, const TriangleStore& store, uint64_t host_bytes) {
+    return SceneOnDisk::own_bytes_of(host_bytes, blocks_of(parts_of(scene, store).extents));
 }
 
 uint64_t checksum_of(const Scene& scene) {

@@ -79,6 +79,12 @@ Result<Done> finish_scene_file(const SceneFront& front, const SaveLevels& save_l
 /// Returns how many bytes write_scene_file() would write of a scene in memory whose levels take so
 /// many, within some for the names of files and warnings; of one on a disk, what its file has.
 uint64_t scene_file_bytes(const Scene& scene, uint64_t levels_bytes);
+/// Does the same for a scene whose meshes are empty and whose triangles lie in the store.
+uint64_t scene_file_bytes(const Scene& scene, const TriangleStore& store, uint64_t levels_bytes);
+
+/// Returns how much of a budget of host memory shading takes for itself, where it reads the file of
+/// such a scene.
+uint64_t bytes_for_shading(const Scene& scene, const TriangleStore& store, uint64_t host_bytes);
 
 /// Returns a checksum of everything that a picture of the scene depends on, and of its names.
 uint64_t checksum_of(const Scene& scene);

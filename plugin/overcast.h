@@ -702,6 +702,12 @@ typedef struct ovc_api {
      * fragment shaders, the host's own too. OVC_ERROR_INVALID_STATE where a device was listed or opened before: the renderer no
      * longer looks. */
     ovc_result (*prepare_process)(ovc_kernel kernel);
+
+    /* Experimental. Tells what save_streamed would make, for two looks at every triangle: leaves and bytes of the GPU as plan does;
+     * host_bytes: the most that tracing what is saved takes of as many host_memory_bytes; smallest_host_bytes: the smallest number
+     * that save_streamed works with; smallest_budget_bytes: about. Of the scene's functions read_corners alone is called, and the
+     * others may be NULL. Its own memory stays below host_memory_bytes. Errors are those of save_streamed. */
+    ovc_result (*plan_streamed)(ovc_device device, const ovc_scene_config* config, const ovc_streamed_scene* scene, ovc_plan* plan);
 } ovc_api;
 
 #if defined(_WIN32)

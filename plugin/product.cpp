@@ -2,6 +2,7 @@
 // The structure of libovercast.so: two-level on one machine.
 #include "core/text/format_text.h"
 #include "plugin/out_of_core/streamed_build.h"
+#include "plugin/out_of_core/streamed_plan.h"
 #include "plugin/structure/failure.h"
 #include "plugin/structure/structure.h"
 #include "plugin/two_level/make_two_level.h"
@@ -43,6 +44,12 @@ Result<Done> save_structure(const StreamedScene& scene, const DeviceInfo& device
     if (!saved)
         return saved.error();
     return Done{};
+}
+
+Result<ovc_plan> plan_streamed_structure(TriangleSource& source, uint64_t host_bytes,
+                                         const DeviceInfo& device, const ovc_scene_config& config,
+                                         BuildProgress* progress) {
+    return plan_streamed(source, host_bytes, two_level_options(config), device, progress);
 }
 
 } // namespace ovc

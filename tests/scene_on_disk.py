@@ -88,6 +88,21 @@ def check_plan(overcast, file, scene, options):
             sys.exit(f"{what}: planned {planned}, made {found}")
 
 
+def check_streamed_plan(overcast, file, scene, options, memory):
+    """Compares what a plan told of a scene that streams with that of the file it became."""
+    def takes(*words):
+        code, said, _ = run([overcast, "info", *words, "--json", "--log-level", "error", *memory])
+        if code != 0:
+            sys.exit(said)
+        return json.loads(said)["plan"]["takes"]
+
+    told, made = takes(scene, *options), takes(file)
+    for what, planned in told.items():
+        print(f"plan of {scene}, {what}: {planned / MIB:.1f} MiB, made {made[what] / MIB:.1f} MiB")
+        if abs(planned - made[what]) > 0.1 * made[what]:
+            sys.exit(f"{what}: planned {planned}, made {made[what]}")
+
+
 def expect_error(pictures, file, sentence, *options):
     code, said, _ = pictures.render(file, *options)
     print(said.strip())
@@ -141,7 +156,9 @@ def main():
                 print(f"skipped: {said}")
                 return 77
             level2 = compare(pictures, file, (0.05,)) if streams else compare(pictures, file)
-            if not streams:
+            if streams:
+                check_streamed_plan(overcast, file, scene, options, streams)
+            else:
                 check_plan(overcast, file, scene, options)
         if len(sys.argv) <= 2:
             damage(pictures, file, level2)

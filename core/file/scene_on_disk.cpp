@@ -32,13 +32,12 @@ SceneOnDisk::SceneOnDisk(std::shared_ptr<const DiskFile> opened, uint64_t budget
       reader_{[this](uint64_t offset, std::span<std::byte> to) { return file.read(offset, to); },
               BlockCache(kBlockBytes, cache_share(budget_bytes, sums.size())), std::move(sums)} {}
 
-uint64_t SceneOnDisk::own_bytes_of(uint64_t budget_bytes) const {
-    const uint64_t sums = reader_.sums.size();
-    return cache_share(budget_bytes, sums) + sums * sizeof(uint64_t);
+uint64_t SceneOnDisk::own_bytes_of(uint64_t budget_bytes, uint64_t blocks) {
+    return cache_share(budget_bytes, blocks) + blocks * sizeof(uint64_t);
 }
 
 uint64_t SceneOnDisk::for_plugin_of(uint64_t budget_bytes) const {
-    return budget_bytes - std::min(budget_bytes, own_bytes_of(budget_bytes));
+    return budget_bytes - std::min(budget_bytes, own_bytes_of(budget_bytes, reader_.sums.size()));
 }
 
 /// The share of the plugin grows with the budget.

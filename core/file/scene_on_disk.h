@@ -79,7 +79,9 @@ public:
     BlockReader& reader() { return reader_; }
     uint64_t budget_bytes() const { return budget_; }
     /// Returns the most of it that the cache and the checksums here may take.
-    uint64_t own_bytes() const { return own_bytes_of(budget_); }
+    uint64_t own_bytes() const { return own_bytes_of(budget_, reader_.sums.size()); }
+    /// Returns the same of another budget and a file with so many blocks of values.
+    static uint64_t own_bytes_of(uint64_t budget_bytes, uint64_t blocks);
     /// Returns what that leaves for the plugin.
     uint64_t for_plugin() const { return for_plugin_of(budget_); }
     /// Returns the smallest budget that leaves so much.
@@ -105,7 +107,6 @@ public:
     void lose(const std::string& what, uint64_t first, uint64_t count);
 
 private:
-    uint64_t own_bytes_of(uint64_t budget_bytes) const;
     uint64_t for_plugin_of(uint64_t budget_bytes) const;
 
     const uint64_t budget_;

@@ -120,6 +120,17 @@ Result<Done> PluginDevice::save_streamed(const ovc_scene_config& config,
     return checked(api_->save_streamed(device_.get(), &config, &scene));
 }
 
+Result<ovc_plan> PluginDevice::plan_streamed(const ovc_scene_config& config,
+                                             const ovc_streamed_scene& scene) const {
+    ovc_plan plan{};
+    plan.struct_size = sizeof(plan);
+    if (const Result<Done> done =
+            checked(api_->plan_streamed(device_.get(), &config, &scene, &plan));
+        !done)
+        return done.error();
+    return plan;
+}
+
 Result<std::vector<ovc_device_info>> list_devices(const ovc_api* api) {
     ovc_device_info empty{};
     empty.struct_size = sizeof(empty);

@@ -58,6 +58,9 @@ public:
     /// Builds and saves a scene that streams; see overcast.h.
     Result<Done> save_streamed(const ovc_scene_config& config,
                                const ovc_streamed_scene& scene) const;
+    /// Plans that.
+    Result<ovc_plan> plan_streamed(const ovc_scene_config& config,
+                                   const ovc_streamed_scene& scene) const;
 
     /// Returns Done when `result` is OVC_OK, else the library's sentence. Call it right after the
     /// call that failed: the next one may replace the sentence.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// save_streamed_levels() lets the plugin build a scene whose triangles lie on a disk.
+// save_streamed_levels() lets the plugin build a scene whose triangles lie on a disk, and
+// plan_streamed_levels() plan it.
 #pragma once
 
 #include "core/result.h"
@@ -44,5 +45,10 @@ Result<Done> save_streamed_levels(const StreamedTriangles& triangles, uint64_t h
                                   ScratchFile& scratch, const BackendOptions& options,
                                   const LogSink& log, const ByteSink& sink,
                                   const KeptLevels* kept = nullptr);
+
+/// Returns what save_streamed_levels() would write, and what tracing that takes within host_bytes.
+/// Error: as above.
+Result<ovc_plan> plan_streamed_levels(const StreamedTriangles& triangles, uint64_t host_bytes,
+                                      const BackendOptions& options, const LogSink& log);
 
 } // namespace ovc

@@ -8,11 +8,11 @@
 #include "host/output/output.h"
 #include "host/scene/kept_conversion.h"
 #include "host/scene/scene_cache.h"
+#include "host/scene/scene_in_store.h"
 #include "host/scene/scene_source.h"
 #include "host/terminal/interrupt.h"
 #include "host/terminal/message.h"
 #include "importers/importer.h"
-#include "testscenes/catalog.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -108,38 +108,6 @@ static Result<Done> convert_to_scene_file(const SceneArguments& source,
     return save_held(*scene, from, options, log, output);
 }
 
-/// Reads a scene whose triangles go to the store instead of memory, so that by default it may have
-/// as many as can be numbered.
-static Result<Scene> stream_scene(const SceneArguments& source, const Streaming& streaming,
-                                  const LogSink& log, FilesRead& files) {
-    if (is_test_scene(source.scenes.front()))
-        return stream_test_scene(source.scenes.front(), streaming.sink);
-    ImportOptions options = import_options(source, log, &files);
-    options.streaming = &streaming;
-    if (source.max_triangles.empty())
-        options.max_triangles = kMaxTriangles;
-    return load(source.scenes.front(), options);
-}
-
-static Result<Done> check_streams(const std::string& source) {
-    if (is_test_scene(source) ? test_scene_entry(source).streams : streams(source))
-        return Done{};
-    return Error{fmt::format("--host-memory goes with inputs that stream, .ply, .obj, .pbrt and "
-                             "the test scene landscape-N; found '{}'",
-                             source)};
-}
-
-static StreamedTriangles triangles_in(const Scene& scene, const TriangleStore& store) {
-    StreamedTriangles triangles;
-    for (size_t m = 0; m < store.meshes(); ++m)
-        triangles.meshes.push_back({scene.soup.chunks[m].origin(), store.corners(m) / 3});
-    triangles.read = [&](uint32_t mesh, uint64_t first, std::span<vec3> corners) {
-        return store.read_corners(mesh, 3 * first, corners);
-    };
-    triangles.error = [&] { return store.error(); };
-    return triangles;
-}
-
 /// Builds the triangles in the store, and writes all of the scene as .ovc.
 static Result<Done> save_stored(const Scene& scene, const TriangleStore& store,
                                 const Provenance& from, BackendOptions options, const LogSink& log,
@@ -160,28 +128,21 @@ static Result<Done> save_stored(const Scene& scene, const TriangleStore& store,
 static Result<Done> convert_streamed(const SceneArguments& source, const BackendOptions& options,
                                      const LogSink& log, const std::string& output,
                                      KeptConversion* kept = nullptr) {
-    const std::filesystem::path folder = std::filesystem::path(output).parent_path();
-    Result<TriangleStore> store = TriangleStore::create(folder);
-    if (!store)
-        return store.error();
     Provenance from;
     FilesRead files;
-    const LogSink listening = noting_warnings(from, log);
-    const Streaming streaming{*store, options.host_bytes, folder};
-    const Result<Scene> scene = stream_scene(source, streaming, listening, files);
-    const Result<Done> stored = store->finish();
-    if (!stored)
-        return stored; // reading ends where the store fails
-    if (!scene)
-        return scene.error();
+    const Result<SceneInStore> read =
+        stream_scene(source, options.host_bytes, std::filesystem::path(output).parent_path(),
+                     noting_warnings(from, log), &files);
+    if (!read)
+        return read.error();
     from.files = files.stamps();
-    if (scene->soup.triangle_count() > 0) {
+    if (read->is_held()) {
         if (kept)
             kept->remove();
-        return save_held(*scene, from, options, log, output);
+        return save_held(read->scene, from, options, log, output);
     }
-    return kept ? kept->write_front(*scene, *store, from)
-                : save_stored(*scene, *store, from, options, log, output);
+    return kept ? kept->write_front(read->scene, read->store, from)
+                : save_stored(read->scene, read->store, from, options, log, output);
 }
 
 /// As convert_streamed(), from where an earlier run ended.
@@ -281,9 +242,7 @@ private:
         if (extension_of(output_) != ".ovc")
             return Error{
                 fmt::format("--host-memory goes with an output in .ovc, not with '{}'", output_)};
-        if (source_.scenes.size() > 1 || !source_.model.empty())
-            return Error{"--host-memory goes with one input alone"};
-        return check_streams(source_.scenes.front());
+        return check_streams(source_);
     }
 
     Result<Done> convert(const BackendOptions& options, const LogSink& log) {

@@ -5,7 +5,9 @@
 #include "host/arguments/backend_arguments.h"
 #include "host/arguments/log_arguments.h"
 #include "host/arguments/memory_size.h"
+#include "host/backend/streamed_levels.h"
 #include "host/command/command.h"
+#include "host/scene/scene_in_store.h"
 #include "host/scene/scene_source.h"
 #include "host/scene/scene_summary.h"
 #include "host/terminal/interrupt.h"
@@ -14,7 +16,10 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cstdio>
+#include <cstdlib>
+#include <filesystem>
 #include <set>
 
 namespace ovc {
@@ -25,7 +30,9 @@ static constexpr const char* kInfoExamples = R"(Examples:
   overcast info dragon.ply
   overcast info plants --json | jq .triangles
   overcast info dragons-10 --gpu-memory 128M
-      how many leaves, how much level 2, and how much of it fits at once)";
+      how many leaves, how much level 2, and how much of it fits at once
+  overcast info scan.ply --host-memory 2G
+      the file that overcast convert would make, and what tracing it would take)";
 
 static Json as_json(const dvec3& v) {
     return {v.x, v.y, v.z};
@@ -72,11 +79,29 @@ static Takes takes_of(const Scene& scene, const ovc_plan& plan) {
     return takes;
 }
 
+/// The same of the file that a scene in scratch files is converted to, within so many bytes of host
+/// memory.
+static Takes takes_of(const SceneInStore& read, const ovc_plan& plan, uint64_t host_bytes) {
+    const uint64_t shading = bytes_for_shading(read.scene, read.store, host_bytes);
+    return {scene_file_bytes(read.scene, read.store, plan.saved_bytes),
+            std::min(host_bytes, plan.host_bytes + shading),
+            plan.ray_bytes + plan.level1_bytes + plan.pool_bytes};
+}
+
+/// All that the command tells of a scene.
+struct SceneInfo {
+    const Scene& scene;
+    SceneSummary summary;
+    Result<ovc_plan> plan;
+    Takes takes; // where there is a plan
+};
+
 /// Returns null where there is no plan. docs/reference/stats.md says what the keys mean.
-static Json plan_json(const Scene& scene, const Result<ovc_plan>& plan) {
+static Json plan_json(const SceneInfo& told) {
+    const Result<ovc_plan>& plan = told.plan;
     if (!plan)
         return nullptr;
-    const Takes takes = takes_of(scene, *plan);
+    const Takes& takes = told.takes;
     return {{"leaves", plan->leaves},
             {"leaf_references", plan->leaf_references},
             {"level2_bytes", plan->level2_bytes},
@@ -97,10 +122,10 @@ static Json plan_json(const Scene& scene, const Result<ovc_plan>& plan) {
             {"seconds", plan->seconds}};
 }
 
-static std::string plan_text(const Scene& scene, const Result<ovc_plan>& plan) {
-    if (!plan)
-        return fmt::format("  plan       none: {}\n", plan.error().message);
-    const ovc_plan& p = *plan;
+static std::string plan_text(const SceneInfo& told) {
+    if (!told.plan)
+        return fmt::format("  plan       none: {}\n", told.plan.error().message);
+    const ovc_plan& p = *told.plan;
     std::string text =
         fmt::format("  plan       {} leaves, {} of level 2, {} the largest page, {} on the host\n",
                     human_count(p.leaves), human_bytes(p.level2_bytes),
@@ -114,7 +139,7 @@ static std::string plan_text(const Scene& scene, const Result<ovc_plan>& plan) {
                         human_bytes(p.gpu_budget_bytes), human_bytes(p.ray_bytes),
                         human_bytes(p.level1_bytes), human_bytes(p.pool_bytes),
                         human_bytes(p.smallest_budget_bytes));
-    const Takes takes = takes_of(scene, p);
+    const Takes& takes = told.takes;
     text += fmt::format("  takes      {} as a scene file, {} of host memory, {} of GPU memory\n",
                         human_bytes(takes.file), human_bytes(takes.host), human_bytes(takes.gpu));
     if (p.smallest_host_bytes > 0)
@@ -126,8 +151,9 @@ static std::string plan_text(const Scene& scene, const Result<ovc_plan>& plan) {
                               human_bytes(p.level2_bytes));
 }
 
-static std::string info_json(const Scene& scene, const SceneSummary& s,
-                             const Result<ovc_plan>& plan) {
+static std::string info_json(const SceneInfo& told) {
+    const Scene& scene = told.scene;
+    const SceneSummary& s = told.summary;
     Json left_out = Json::array();
     for (const LeftOut& item : s.left_out)
         left_out.push_back({{"what", item.what}, {"bytes", item.bytes}});
@@ -151,7 +177,7 @@ static std::string info_json(const Scene& scene, const SceneSummary& s,
           {"several_leaves", s.needs.several_leaves},
           {"certified", s.needs.certified}}},
         {"left_out", left_out},
-        {"plan", plan_json(scene, plan)}};
+        {"plan", plan_json(told)}};
     if (!s.bounds.empty())
         document["bounds"] = {{"min", as_json(s.bounds.lo)}, {"max", as_json(s.bounds.hi)}};
     return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
@@ -179,8 +205,9 @@ static std::string lights_text(const Scene& scene) {
     return scene.may_add_light ? "none; render adds one" : "none";
 }
 
-static std::string info_text(const std::string& source, const Scene& scene, const SceneSummary& s,
-                             const Result<ovc_plan>& plan) {
+static std::string info_text(const std::string& source, const SceneInfo& told) {
+    const Scene& scene = told.scene;
+    const SceneSummary& s = told.summary;
     std::string text =
         fmt::format("  scene      {}\n  triangles  {} in {} mesh{}\n", printable(source),
                     human_count(s.triangles), human_count(s.meshes), s.meshes == 1 ? "" : "es");
@@ -203,7 +230,13 @@ static std::string info_text(const std::string& source, const Scene& scene, cons
                     lights_text(scene), scene.camera ? "given" : "none; render frames the scene");
     text += fmt::format("  needs      {}\n  left out   {}\n", needs_text(s.needs),
                         left_out_text(s.left_out));
-    return text + plan_text(scene, plan);
+    return text + plan_text(told);
+}
+
+/// Returns the folder for scratch files, which may be larger than the memory that /tmp often is.
+static std::filesystem::path scratch_folder() {
+    const char* const named = std::getenv("TMPDIR");
+    return named && *named ? named : "/var/tmp";
 }
 
 namespace {
@@ -214,7 +247,10 @@ public:
         app.description("Says what a scene consists of, what it needs, what is left out of it, "
                         "and, before anything is built, how it would be traced.");
         source_.add_to(app);
-        backend_.add_to(app);
+        backend_.add_to(app,
+                        "For an .ovc file, or one that convert reads with it: the most host memory "
+                        "to use, 2G, besides what the program and the driver take; the plan is "
+                        "that of tracing within it. Triangles that are converted wait in TMPDIR");
         app.add_flag("--json", json_, "As JSON, for a program");
         log_.add_to(app);
         app.footer(kInfoExamples);
@@ -230,26 +266,63 @@ public:
         if (!options)
             return options.error();
         const LogSink log = standard_error_log(*level);
+        if (options->host_bytes > 0 && !source_.is_one_scene_file())
+            return tell_streamed(*options, log);
         source_.host_bytes = options->host_bytes;
         const Result<Scene> scene = open_scene(source_, log);
-        if (!scene)
-            return scene.error();
-        options->on_disk = scene->on_disk.get();
-        SceneSummary summary = summarize(*scene);
-        if (scene->on_disk)
-            if (const auto read = scene->on_disk->checked<Done>(Done{}); !read)
-                return read.error();
-        const Result<ovc_plan> plan = make_plan(scene->soup, *options, log);
-        summary.needs =
-            needs_of(*scene, {/* shadows= */ true, options->precision == OVC_PRECISION_CERTIFIED,
-                              plan ? plan->leaves : 2});
-        summary.left_out = left_out_of(*scene, summary.needs);
-        fmt::print("{}", json_ ? info_json(*scene, summary, plan)
-                               : info_text(source_.name(), *scene, summary, plan));
-        return kExitOk;
+        return scene ? tell(*scene, std::move(*options), log) : Result<int>(scene.error());
     }
 
 private:
+    /// Tells of a scene in memory, or in a scene file.
+    Result<int> tell(const Scene& scene, BackendOptions options, const LogSink& log) const {
+        options.on_disk = scene.on_disk.get();
+        SceneInfo told{scene, summarize(scene), ovc_plan{}, {}};
+        if (scene.on_disk)
+            if (const auto read = scene.on_disk->checked<Done>(Done{}); !read)
+                return read.error();
+        told.plan = make_plan(scene.soup, options, log);
+        if (told.plan)
+            told.takes = takes_of(scene, *told.plan);
+        print(std::move(told), options.precision, /* has_normals= */ false);
+        return kExitOk;
+    }
+
+    /// Tells of a scene that streams, and of the scene file that it would be converted to.
+    Result<int> tell_streamed(BackendOptions options, const LogSink& log) const {
+        if (const Result<Done> fine = check_streams(source_); !fine)
+            return fine.error();
+        const Result<SceneInStore> read =
+            stream_scene(source_, options.host_bytes, scratch_folder(), log);
+        if (!read)
+            return read.error();
+        if (read->is_held())
+            return tell(read->scene, std::move(options), log);
+        Result<SceneSummary> summary = summarize(read->scene, read->store);
+        if (!summary)
+            return summary.error();
+        options.watching = BuildWatching::Shown;
+        SceneInfo told{read->scene,
+                       std::move(*summary),
+                       plan_streamed_levels(triangles_in(read->scene, read->store),
+                                            options.host_bytes, options, log),
+                       {}};
+        if (told.plan)
+            told.takes = takes_of(*read, *told.plan, options.host_bytes);
+        print(std::move(told), options.precision, read->has_normals());
+        return kExitOk;
+    }
+
+    void print(SceneInfo told, ovc_precision precision, bool has_normals) const {
+        SceneSummary& summary = told.summary;
+        summary.needs =
+            needs_of(told.scene, {/* shadows= */ true, precision == OVC_PRECISION_CERTIFIED,
+                                  told.plan ? told.plan->leaves : 2});
+        summary.needs.vertex_normals |= has_normals;
+        summary.left_out = left_out_of(told.scene, summary.needs);
+        fmt::print("{}", json_ ? info_json(told) : info_text(source_.name(), told));
+    }
+
     SceneArguments source_;
     BackendArguments backend_;
     bool json_ = false;

@@ -129,10 +129,9 @@ static Result<Scene> make_with_model(const std::string& name, const ImportOption
     return scene ? std::move(scene) : Error{fmt::format("{}: {}", model, scene.error().message)};
 }
 
-static bool is_one_scene_file(const SceneArguments& arguments) {
-    return arguments.scenes.size() == 1 && arguments.model.empty() &&
-           !is_test_scene(arguments.scenes[0]) &&
-           std::filesystem::path(arguments.scenes[0]).extension() == ".ovc";
+bool SceneArguments::is_one_scene_file() const {
+    return scenes.size() == 1 && model.empty() && !is_test_scene(scenes[0]) &&
+           std::filesystem::path(scenes[0]).extension() == ".ovc";
 }
 
 ImportOptions import_options(const SceneArguments& arguments, const LogSink& log,
@@ -150,7 +149,7 @@ ImportOptions import_options(const SceneArguments& arguments, const LogSink& log
 
 Result<Scene> open_scene(const SceneArguments& arguments, const LogSink& log,
                          std::optional<ImageSize> size, FilesRead* files) {
-    if (arguments.host_bytes > 0 && !is_one_scene_file(arguments))
+    if (arguments.host_bytes > 0 && !arguments.is_one_scene_file())
         return Error{fmt::format("--host-memory goes with one .ovc file, which overcast convert "
                                  "makes; found '{}'",
                                  arguments.name())};

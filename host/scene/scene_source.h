@@ -35,6 +35,8 @@ struct SceneArguments {
     Result<Done> check() const;
     /// Returns the scene's name in messages and statistics: "dragon.ply + floor.obj".
     std::string name() const;
+    /// Returns whether it is one scene file, whose triangles need not fit into memory.
+    bool is_one_scene_file() const;
     /// Returns whether what it names may move with the moment.
     bool may_move() const;
     /// Returns the files that the user named; test scenes are none.

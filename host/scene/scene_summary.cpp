@@ -103,6 +103,25 @@ SceneSummary summarize(const Scene& scene) {
     return summary;
 }
 
+Result<SceneSummary> summarize(const Scene& scene, const TriangleStore& store) {
+    constexpr uint64_t kPart = 16384; // triangles in memory at once
+    SceneSummary summary;
+    summary.triangles = store.triangles();
+    summary.meshes = store.meshes();
+    Census all;
+    std::vector<vec3> corners;
+    for (size_t m = 0; m < store.meshes(); ++m)
+        for (uint64_t first = 0; first < store.corners(m); first += corners.size()) {
+            corners.resize(std::min(3 * kPart, store.corners(m) - first));
+            if (!store.read_corners(m, first, corners))
+                return *store.error();
+            all = sum_of(all, count(Chunk::borrowing(scene.soup.chunks[m].origin(), corners)));
+        }
+    summary.dropped = all.dropped;
+    summary.bounds = all.bounds;
+    return summary;
+}
+
 Needs needs_of(const Scene& scene, const Query& query) {
     Needs needs;
     needs.vertex_normals = triangles_without_normals(scene) < scene.soup.triangle_count();

@@ -3,7 +3,9 @@
 #pragma once
 
 #include "core/box.h"
+#include "core/result.h"
 #include "core/scene.h"
+#include "importers/file/triangle_store.h"
 
 #include <cstdint>
 #include <string>
@@ -45,6 +47,9 @@ struct SceneSummary {
 };
 
 SceneSummary summarize(const Scene& scene);
+/// Does the same for a scene whose meshes are empty and whose triangles lie in the store. Error:
+/// the disk fails.
+Result<SceneSummary> summarize(const Scene& scene, const TriangleStore& store);
 
 /// By its meshes and materials alone, whose triangles are not looked at.
 Needs needs_of(const Scene& scene, const Query& query = {});

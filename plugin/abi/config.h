@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The config of a scene: its checks, and its function for progress.
+// The config of a scene: its checks, and what tells its function for progress.
 #pragma once
 
 #include "core/build_progress.h"
+#include "core/system/stopwatch.h"
 #include "core/text/format_text.h"
 #include "plugin/abi/handles.h"
 #include "plugin/abi/scene_call.h"
@@ -10,6 +11,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <optional>
 
 namespace ovc {
@@ -68,6 +70,26 @@ void with_progress(const ovc_scene_config& config, const char* call, Body&& body
                                                        stopped ? "ovc_scene_config.progress"
                                                                : "a function of the host's")};
     }
+}
+
+/// Fills in as much of `plan` as its header knows with make(progress), a Result<ovc_plan>.
+template <class Make>
+void tell_plan(ovc_plan* plan, const ovc_scene_config& config, const char* call, Make&& make) {
+    if (!plan)
+        invalid(format_text("{}: plan is NULL", call));
+    const size_t size = plan->struct_size;
+    check_size<ovc_plan>("ovc_plan", size, offsetof(ovc_plan, saved_bytes));
+    const Stopwatch watch;
+    ovc_plan all{};
+    with_progress(config, call, [&](BuildProgress* progress) {
+        const Result<ovc_plan> told = make(progress);
+        if (!told)
+            throw Failure{code_of(told.error().kind, OVC_ERROR_INTERNAL), told.error().message};
+        all = *told;
+    });
+    all.seconds = watch.seconds();
+    all.struct_size = size;
+    std::memcpy(plan, &all, size);
 }
 
 } // namespace ovc

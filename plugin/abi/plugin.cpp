@@ -45,6 +45,7 @@ extern "C" const ovc_api* ovc_get_api(uint32_t abi_version) {
         ovc::remove_mesh,
         ovc::save_streamed,
         ovc::prepare_process,
+        ovc::plan_streamed,
     };
     return abi_version == OVC_ABI_VERSION ? &api : nullptr;
 }

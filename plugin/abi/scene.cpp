@@ -4,7 +4,6 @@
 #include "plugin/abi/scene.h"
 
 #include "core/build_progress.h"
-#include "core/system/stopwatch.h"
 #include "core/text/format_text.h"
 #include "plugin/abi/config.h"
 #include "plugin/abi/device_call.h"
@@ -117,25 +116,12 @@ ovc_result statistics(ovc_scene scene, ovc_statistics* statistics) {
 
 ovc_result plan(ovc_scene scene, ovc_plan* plan) {
     return on_scene(scene, "plan", [&] {
-        if (!plan)
-            invalid("plan: plan is NULL");
-        const size_t size = plan->struct_size;
-        check_size<ovc_plan>("ovc_plan", size, offsetof(ovc_plan, saved_bytes));
         if (scene->store && scene->structure)
             invalid("plan: the scene, which lies on a disk, is committed already");
-        const Stopwatch watch;
-        ovc_plan all{};
-        with_progress(scene->config, "plan", [&](BuildProgress* progress) {
-            const Result<ovc_plan> told =
-                plan_structure(scene->soup, scene->device->gl->info(), scene->config, progress,
-                               scene->store.get());
-            if (!told)
-                throw Failure{code_of(told.error().kind, OVC_ERROR_INTERNAL), told.error().message};
-            all = *told;
+        tell_plan(plan, scene->config, "plan", [&](BuildProgress* progress) {
+            return plan_structure(scene->soup, scene->device->gl->info(), scene->config, progress,
+                                  scene->store.get());
         });
-        all.seconds = watch.seconds();
-        all.struct_size = size;
-        std::memcpy(plan, &all, size);
     });
 }
 

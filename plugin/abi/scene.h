@@ -21,6 +21,8 @@ ovc_result save(ovc_scene scene, ovc_write_function write, void* user);
 ovc_result purge(ovc_scene scene);
 ovc_result save_streamed(ovc_device device, const ovc_scene_config* config,
                          const ovc_streamed_scene* scene);
+ovc_result plan_streamed(ovc_device device, const ovc_scene_config* config,
+                         const ovc_streamed_scene* scene, ovc_plan* plan);
 void destroy_scene(ovc_scene scene);
 
 } // namespace ovc

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// save_streamed: checks its arguments, and makes a source and scratch space of the host's
-// functions.
+// save_streamed and plan_streamed: check their arguments, and make a source and scratch space of
+// the host's functions.
 #include "core/text/format_text.h"
 #include "plugin/abi/config.h"
 #include "plugin/abi/device_call.h"
@@ -87,19 +87,17 @@ private:
     std::vector<Bytes> kept_;
 };
 
-ovc_streamed_scene checked(const ovc_streamed_scene* given) {
+/// Checks what planning needs.
+ovc_streamed_scene checked(const ovc_streamed_scene* given, const char* call) {
     if (!given)
-        invalid("save_streamed: scene is NULL");
+        invalid(format_text("{}: scene is NULL", call));
     const ovc_streamed_scene scene = whole("ovc_streamed_scene", given, kBeforeSteps);
     if (scene.reserved)
         invalid("ovc_streamed_scene.reserved is not 0");
-    if (!scene.read_corners || !scene.write_scratch || !scene.read_scratch || !scene.write)
-        invalid("ovc_streamed_scene: a function is NULL");
+    if (!scene.read_corners)
+        invalid("ovc_streamed_scene.read_corners is NULL");
     if (scene.mesh_count && !scene.meshes)
         invalid("ovc_streamed_scene.meshes is NULL, but mesh_count is not 0");
-    if (scene.kept_count && (!scene.kept || !scene.keep_step || !scene.read_written))
-        invalid("ovc_streamed_scene: kept, keep_step or read_written is NULL, but kept_count is "
-                "not 0");
     for (uint32_t m = 0; m < scene.mesh_count; ++m) {
         const ovc_streamed_mesh& mesh = scene.meshes[m];
         if (mesh.has_doubles > 1 || mesh.reserved)
@@ -116,6 +114,19 @@ ovc_streamed_scene checked(const ovc_streamed_scene* given) {
     return scene;
 }
 
+/// Checks what building needs besides.
+void check_functions(const ovc_streamed_scene& scene) {
+    if (!scene.write_scratch || !scene.read_scratch || !scene.write)
+        invalid("ovc_streamed_scene: a function is NULL");
+    if (scene.kept_count && (!scene.kept || !scene.keep_step || !scene.read_written))
+        invalid("ovc_streamed_scene: kept, keep_step or read_written is NULL, but kept_count is "
+                "not 0");
+}
+
+uint64_t host_bytes_of(const ovc_streamed_scene& scene) {
+    return scene.host_memory_bytes ? scene.host_memory_bytes : ~uint64_t(0) / 2;
+}
+
 } // namespace
 
 ovc_result save_streamed(ovc_device device, const ovc_scene_config* config,
@@ -123,7 +134,8 @@ ovc_result save_streamed(ovc_device device, const ovc_scene_config* config,
     return on_device(device, "save_streamed", [&] {
         const ovc_scene_config asked = checked_config(config);
         check_config(asked, device->gl->info());
-        const ovc_streamed_scene scene = checked(given);
+        const ovc_streamed_scene scene = checked(given, "save_streamed");
+        check_functions(scene);
         HostSource source(scene);
         HostScratch scratch(scene);
         HostSteps steps(scene);
@@ -131,14 +143,28 @@ ovc_result save_streamed(ovc_device device, const ovc_scene_config* config,
             const HostFunction mark;
             return scene.write(scene.user, bytes.data(), bytes.size()) == 0;
         };
-        const uint64_t host_bytes =
-            scene.host_memory_bytes ? scene.host_memory_bytes : ~uint64_t(0) / 2;
         const LoopThreads::Scope threads(device->loops);
         with_progress(asked, "save_streamed", [&](BuildProgress* progress) {
-            check(save_structure({source, scratch, host_bytes, scene.keep_step ? &steps : nullptr},
-                                 device->gl->info(), asked, sink, device->log, progress));
+            check(save_structure(
+                {source, scratch, host_bytes_of(scene), scene.keep_step ? &steps : nullptr},
+                device->gl->info(), asked, sink, device->log, progress));
             if (progress)
                 progress->finish(); // the last chance to be cancelled
+        });
+    });
+}
+
+ovc_result plan_streamed(ovc_device device, const ovc_scene_config* config,
+                         const ovc_streamed_scene* given, ovc_plan* plan) {
+    return on_device(device, "plan_streamed", [&] {
+        const ovc_scene_config asked = checked_config(config);
+        check_config(asked, device->gl->info());
+        const ovc_streamed_scene scene = checked(given, "plan_streamed");
+        HostSource source(scene);
+        const LoopThreads::Scope threads(device->loops);
+        tell_plan(plan, asked, "plan_streamed", [&](BuildProgress* progress) {
+            return plan_streamed_structure(source, host_bytes_of(scene), device->gl->info(), asked,
+                                           progress);
         });
     });
 }

@@ -129,7 +129,9 @@ private:
             if (sample.triangles.empty())
                 return double(kMaxBytesPerTriangle);
             if (!rates)
-                rates.emplace(soup_, triangles, sample.triangles, sample.rate, bounds, progress_);
+                rates.emplace(soup_, triangles,
+                              choose_cubes(soup_, sample.triangles, sample.rate, triangles.size()),
+                              bounds, one_frame, progress_);
             return rates->mean_of(double(page), copies);
         };
         return limits_.max_triangles(triangles.size(), rate_of, [&] {

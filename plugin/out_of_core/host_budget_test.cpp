@@ -15,6 +15,8 @@ TEST(HostBudget, PartsStayBelowTheWhole) {
                 ASSERT_GT(budget.leaf_triangles(), 0u);
                 const uint64_t cells = 2 * triangles / budget.leaf_triangles() + 1;
                 EXPECT_LE(cells * budget.buffer_bytes(cells), budget.bytes / 8 + 4096);
+                const uint64_t in_buffer = budget.buffer_bytes(cells) / 48;
+                EXPECT_LE(triangles / in_buffer * 16, budget.bytes / 4) << "kept of each buffer";
                 EXPECT_LE(budget.triangles_at_once() * kBytesOfCell, budget.bytes / 2);
                 EXPECT_LE(triangles / budget.sample_rate(triangles) * kBytesOfSample,
                           budget.bytes / 4);

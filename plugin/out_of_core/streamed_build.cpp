@@ -13,8 +13,8 @@
 #include "plugin/out_of_core/cell_builder.h"
 #include "plugin/out_of_core/deal_source.h"
 #include "plugin/out_of_core/dealt_cells.h"
-#include "plugin/out_of_core/host_budget.h"
 #include "plugin/out_of_core/source_survey.h"
+#include "plugin/out_of_core/streamed_cut.h"
 
 #include <algorithm>
 #include <cassert>
@@ -23,16 +23,6 @@
 
 namespace ovc {
 namespace {
-
-/// What pages of meshes take a triangle. Leaves whose pages turn out too large are cut again.
-constexpr double kBytesPerTriangle = 52;
-
-uint64_t triangles_of(std::span<const SourceMesh> meshes) {
-    uint64_t count = 0;
-    for (const SourceMesh& mesh : meshes)
-        count += mesh.triangles;
-    return count;
-}
 
 std::vector<uint32_t> first_numbers_of(std::span<const SourceMesh> meshes) {
     std::vector<uint32_t> first;
@@ -44,19 +34,13 @@ std::vector<uint32_t> first_numbers_of(std::span<const SourceMesh> meshes) {
     return first;
 }
 
-Error too_small(const HostBudget& budget, uint64_t triangles, uint64_t smallest) {
-    return over_budget(format_text("{} bytes of host memory are too few for {} triangles on {} "
-                                   "threads: the smallest number that works is {}",
-                                   budget.bytes, triangles, budget.threads, smallest));
-}
-
 class StreamedBuilder {
 public:
     StreamedBuilder(const StreamedScene& scene, const TwoLevelOptions& options,
                     const MemoryPlan& plan, const ByteSink& sink, BuildProgress* progress)
         : source_(scene.source),
           scratch_(scene.scratch),
-          budget_{scene.host_bytes, std::max<size_t>(thread_count(), kMinThreads)},
+          budget_(host_budget(scene.host_bytes)),
           options_(options),
           plan_(plan),
           progress_(progress),
@@ -71,8 +55,7 @@ public:
             return too_small(budget_, all_, smallest);
         begin(progress_, "triangles", 0.1, all_);
         set_limits(all_);
-        const uint32_t rate =
-            std::max(sample_rate(all_, max_triangles_), budget_.sample_rate(all_));
+        const uint32_t rate = streamed_sample_rate(budget_, all_, max_triangles());
         SourceSurvey surveyed = survey_source(source_, rate, progress_);
         hittable_ = surveyed.hittable();
         set_limits(hittable_);
@@ -92,21 +75,18 @@ public:
 
 private:
     void set_limits(uint64_t triangles) {
-        limits_ = limits_of(options_, plan_, triangles, triangles);
-        const uint64_t wanted =
-            limits_.pages_matter() ? limits_.triangles_at(kBytesPerTriangle) : limits_.triangles;
-        max_triangles_ = uint32_t(
-            std::clamp<uint64_t>(std::min(wanted, budget_.leaf_triangles()), 1, kNone - 1));
+        limits_ = streamed_limits(options_, plan_, budget_, triangles);
     }
+    uint32_t max_triangles() const { return limits_.max_triangles; }
 
     /// Throws a Failure where steps were kept of another scene, or where they would come out
     /// differently now.
     void check_steps(uint64_t soup, uint32_t rate) {
         Checksum sum;
         for (const uint64_t number :
-             {version_of_levels(), soup, uint64_t(rate), uint64_t(max_triangles_), budget_.bytes,
-              uint64_t(budget_.threads), limits_.triangles, limits_.page_bytes,
-              limits_.whole_bytes})
+             {version_of_levels(), soup, uint64_t(rate), uint64_t(max_triangles()), budget_.bytes,
+              uint64_t(budget_.threads), limits_.limits.triangles, limits_.limits.page_bytes,
+              limits_.limits.whole_bytes})
             sum.add_value(number);
         const uint64_t expected = sum.value();
         uint64_t found = 0;
@@ -123,12 +103,8 @@ private:
         level1_.bounds = bounds;
         level1_.padding = padding_of(bounds);
         begin(progress_, "level 1", 0.3, all_);
-        if (hittable_ <= max_triangles_)
-            planes_ = {KdNode::leaf(0, 0)};
-        else
-            planes_ = cut_sample(sample.soup(), drawn, rate, bounds, padding_of(bounds),
-                                 max_triangles_, progress_)
-                          .nodes;
+        planes_ = streamed_planes(sample.soup(), drawn, rate, hittable_, bounds, max_triangles(),
+                                  progress_);
         cells_ = cells_of(planes_, bounds, level1_.padding);
         const size_t cells = cells_.size() + 1; // the last one is that of far-reaching triangles
         dealt_.emplace(cells, source_.meshes(), budget_.buffer_bytes(cells), scratch_);
@@ -137,7 +113,7 @@ private:
             dealt_->restore(std::move(dealt));
             add(progress_, all_);
         } else {
-            deal_source(source_, finder, hittable_, max_triangles_, *dealt_, progress_);
+            deal_source(source_, finder, hittable_, max_triangles(), *dealt_, progress_);
             steps_.keep(dealt_->dealt());
         }
         uint64_t largest = 0;
@@ -195,9 +171,9 @@ private:
         }
         begin(progress_, "level 2", 0.6, 2 * references);
         CellOptions options{.bounds = level1_.bounds,
-                            .max_triangles = max_triangles_,
+                            .max_triangles = max_triangles(),
                             .by_all = by_all,
-                            .max_page_bytes = limits_.page_bytes_of(planned_.size()),
+                            .max_page_bytes = limits_.limits.page_bytes_of(planned_.size()),
                             .first_numbers = first_numbers_};
         const Result<LoosePairs> loose = choose_loose_pairs(order, options, references);
         if (!loose)
@@ -277,8 +253,7 @@ private:
     const uint64_t all_;    // triangles, whether they can be hit or not
     uint64_t hittable_ = 0; // of them, duplicates included
     const std::vector<uint32_t> first_numbers_;
-    LeafLimits limits_{};
-    uint32_t max_triangles_ = 1;
+    StreamedLimits limits_;
     Level1 level1_; // without nodes and leaves
     std::vector<KdNode> planes_;
     std::vector<Cell> cells_;
@@ -288,24 +263,6 @@ private:
     BuildSteps steps_;
     StreamedLevelsWriter levels_;
 };
-
-/// Reads all of the source.
-Soup read_soup(TriangleSource& source) {
-    Soup soup;
-    for (uint32_t m = 0; m < source.meshes().size(); ++m) {
-        const SourceMesh& mesh = source.meshes()[m];
-        const auto corners_of = [&](auto corner) {
-            std::vector<decltype(corner)> corners(mesh.triangles * 3);
-            if (!corners.empty())
-                source.read(m, 0, std::as_writable_bytes(std::span(corners)));
-            return corners;
-        };
-        soup.chunks.push_back(mesh.has_doubles
-                                  ? Chunk::owning_doubles(mesh.origin, corners_of(dvec3()))
-                                  : Chunk::owning(mesh.origin, corners_of(vec3())));
-    }
-    return soup;
-}
 
 Result<StreamedLevels> save_in_memory(TriangleSource& source, const TwoLevelOptions& options,
                                       const MemoryPlan& plan, const DeviceInfo& device,

@@ -4,6 +4,7 @@
 
 #include "core/build_progress.h"
 #include "core/soup.h"
+#include "plugin/plan/cubes.h"
 
 #include <cstdint>
 #include <span>
@@ -18,16 +19,14 @@ inline constexpr uint64_t kPageStart = 128;
 /// any is.
 inline constexpr uint64_t kMaxBytesPerTriangle = 232;
 
-/// Builds pages of some cubes, each with all the triangles that touch it. The cubes lie around
-/// triangles of a sample, so there are many cubes where there are many triangles.
+/// Builds pages of some cubes, each with all the triangles that touch it.
 class PageRates {
 public:
-    /// sample: about one in `rate` (> 0) of `triangles`, not empty. bounds: the box of all. This
-    /// costs about a sixtieth of building all pages, and a look at every triangle, a unit of
-    /// progress each.
-    PageRates(const Soup& soup, std::span<const TriangleId> triangles,
-              std::span<const TriangleId> sample, uint32_t rate, const Box& bounds,
-              BuildProgress* progress = nullptr);
+    /// triangles: of the soup, at least those that touch the cubes. bounds: the box of the whole
+    /// scene. one_frame: whether one frame suits it. This costs about a sixtieth of building all
+    /// pages, and a look at every triangle, a unit of progress each.
+    PageRates(const Soup& soup, std::span<const TriangleId> triangles, const Cubes& cubes,
+              const Box& bounds, bool one_frame, BuildProgress* progress = nullptr);
 
     /// Returns the bytes a triangle, on average, in small cubes.
     double mean() const { return mean_; }

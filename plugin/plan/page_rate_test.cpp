@@ -2,6 +2,7 @@
 // Rates that clusters tell, compared with the page of all triangles.
 #include "plugin/plan/page_rate.h"
 
+#include "gpu/frame/frames.h"
 #include "gpu/page/page.h"
 #include "kdtree/partition.h"
 #include "kdtree/sample.h"
@@ -15,6 +16,12 @@ namespace {
 double rate_of_one_page(const Soup& soup, const std::vector<TriangleId>& ids, const Box& bounds) {
     const Page page = build_page(soup, whole_leaf(soup, ids, bounds), nullptr, LoosePairs{true});
     return double(page.bytes() - kPageStart) / double(ids.size());
+}
+
+PageRates rates_of(const Soup& soup, const std::vector<TriangleId>& ids, uint32_t rate,
+                   const Box& bounds) {
+    const Cubes cubes = choose_cubes(soup, sample_triangles(soup, ids, rate), rate, ids.size());
+    return PageRates(soup, ids, cubes, bounds, one_frame_suits(soup, ids, bounds));
 }
 
 TEST(PageRates, AreThoseOfTheWholePage) {
@@ -32,7 +39,7 @@ TEST(PageRates, AreThoseOfTheWholePage) {
         EXPECT_GT(whole, least) << name;
         EXPECT_LT(whole, most) << name;
         for (const uint32_t rate : {1u, 4u}) {
-            const PageRates rates(soup, ids, sample_triangles(soup, ids, rate), rate, bounds);
+            const PageRates rates = rates_of(soup, ids, rate, bounds);
             EXPECT_NEAR(rates.mean() * rates.with_cuts(40000, 1) / whole, 1, 0.08)
                 << name << " by one in " << rate;
         }
@@ -49,7 +56,7 @@ TEST(PageRates, TellOnePartOfASceneFromAnother) {
     }
     Box bounds;
     const auto ids = hittable_triangles(both, nullptr, &bounds);
-    const PageRates rates(both, ids, sample_triangles(both, ids, 2), 2, bounds);
+    const PageRates rates = rates_of(both, ids, 2, bounds);
     const double left = rates.within({dvec3(-5), dvec3(5)});
     const double right = rates.within({dvec3(5, -5, -5), dvec3(15, 5, 5)});
     EXPECT_LT(left, 50);

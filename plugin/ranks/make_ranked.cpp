@@ -86,4 +86,10 @@ Result<Done> save_structure(const StreamedScene&, const DeviceInfo&, const ovc_s
                   "save_streamed: one process builds what is saved; libovercast.so does it"};
 }
 
+Result<ovc_plan> plan_streamed_structure(TriangleSource&, uint64_t, const DeviceInfo&,
+                                         const ovc_scene_config&, BuildProgress*) {
+    throw Failure{OVC_ERROR_INVALID_ARGUMENT,
+                  "plan_streamed: one process builds what is saved; libovercast.so plans it"};
+}
+
 } // namespace ovc

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Structure: the interface of what answers rays behind the C ABI. Each library defines the three
+// Structure: the interface of what answers rays behind the C ABI. Each library defines the
 // functions at the end for itself: libovercast.so makes two-level (two_level/make_two_level.cpp),
 // libovercast-thesis.so the structures that two-level is compared with (thesis/).
 #pragma once
@@ -122,6 +122,12 @@ make_structure(const Soup& soup, GlThread& gl, const ovc_scene_config& config, c
 Result<Done> save_structure(const StreamedScene& scene, const DeviceInfo& device,
                             const ovc_scene_config& config, const ByteSink& sink,
                             const LogSink& log, BuildProgress* progress = nullptr);
+
+/// Tells what save_structure() would write of the source, within so many bytes of host memory;
+/// ovc_plan.seconds is left to the caller. Throws and fails as it does.
+Result<ovc_plan> plan_streamed_structure(TriangleSource& source, uint64_t host_bytes,
+                                         const DeviceInfo& device, const ovc_scene_config& config,
+                                         BuildProgress* progress = nullptr);
 
 /// Tells what make_structure() would make of the soup, or of what the store reads; ovc_plan.seconds
 /// is left to the caller. Throws as make_structure() does. Error: the GPU's budget is too small for

@@ -91,6 +91,11 @@ Result<Done> save_structure(const StreamedScene&, const DeviceInfo&, const ovc_s
     refuse("save_streamed: only two-level (libovercast.so) can be saved");
 }
 
+Result<ovc_plan> plan_streamed_structure(TriangleSource&, uint64_t, const DeviceInfo&,
+                                         const ovc_scene_config&, BuildProgress*) {
+    refuse("plan_streamed: only two-level (libovercast.so) can be saved");
+}
+
 Result<std::unique_ptr<Structure>> make_structure(const Soup& soup, GlThread& gl,
                                                   const ovc_scene_config& config,
                                                   const LogSink& log, BuildProgress* progress,

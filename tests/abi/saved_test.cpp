@@ -289,6 +289,49 @@ TEST_F(Saved, AStreamedSceneGoesOnWhereACallEnded) {
     }
 }
 
+TEST_F(Saved, AStreamedSceneIsPlanned) {
+    std::vector<Soup> soups(1);
+    const Soup half = test::random_soup(1, 30'000, 0.01);
+    std::vector<vec3> corners; // every triangle has a duplicate
+    for (int i = 0; i < 2; ++i)
+        corners.insert(corners.end(), half.chunks[0].corners().begin(),
+                       half.chunks[0].corners().end());
+    soups[0].chunks.push_back(Chunk::owning(dvec3(0), std::move(corners)));
+    soups.push_back(test::closed_grid(160));
+    soups.push_back(test::random_soup(2, 40'000, 0.05));
+    for (const Soup& soup : soups) {
+        StreamedSoup streamed(soup);
+        ovc_streamed_scene scene = streamed.scene(kSmallHost);
+        ASSERT_EQ(api().save_streamed(device.get(), nullptr, &scene), OVC_OK)
+            << api().last_error(device.get());
+        scene.write_scratch = nullptr;
+        scene.read_scratch = nullptr;
+        scene.write = nullptr;
+        auto plan = test::sized<ovc_plan>();
+        ASSERT_EQ(api().plan_streamed(device.get(), nullptr, &scene, &plan), OVC_OK)
+            << api().last_error(device.get());
+        EXPECT_EQ(plan.triangles, soup.triangle_count());
+        EXPECT_EQ(plan.hittable, soup.triangle_count());
+        EXPECT_TRUE(plan.fits);
+        const double saved = double(streamed.saved.size());
+        EXPECT_NEAR(double(plan.saved_bytes), saved, 0.1 * saved);
+        const ovc_statistics made =
+            statistics(committed(soup, streamed.saved.bytes(), test::sized<ovc_scene_config>()));
+        EXPECT_EQ(made.from_saved, 1u) << log;
+        EXPECT_NEAR(double(plan.level2_bytes), double(made.level2_bytes),
+                    0.1 * double(made.level2_bytes));
+        EXPECT_NEAR(double(plan.leaves), double(made.leaves), 0.1 * double(made.leaves) + 1);
+        EXPECT_NEAR(double(plan.leaf_references), double(made.leaf_references),
+                    0.1 * double(made.leaf_references));
+        EXPECT_LE(plan.host_bytes, kSmallHost);
+        scene.host_memory_bytes = plan.smallest_host_bytes;
+        EXPECT_EQ(api().plan_streamed(device.get(), nullptr, &scene, &plan), OVC_OK);
+        scene.host_memory_bytes -= 1;
+        EXPECT_EQ(api().plan_streamed(device.get(), nullptr, &scene, &plan),
+                  OVC_ERROR_OUT_OF_BUDGET);
+    }
+}
+
 TEST_F(Saved, AStreamedSceneTellsWhyItCannotBeSaved) {
     const Soup soup = test::closed_grid(160);
     StreamedSoup streamed(soup);

@@ -232,6 +232,31 @@ Misuses misuse_save_streamed(Subject& s) {
     return wrong.found();
 }
 
+ovc_result use_plan_streamed(Subject& s) {
+    size_t bytes = 0;
+    const ovc_streamed_scene scene = streamed_field(bytes);
+    auto plan = sized<ovc_plan>();
+    const ovc_result result = api().plan_streamed(s.device, nullptr, &scene, &plan);
+    return plan.triangles == kCells && bytes == 0 ? result : OVC_ERROR_INTERNAL;
+}
+Misuses misuse_plan_streamed(Subject& s) {
+    Wrong wrong(s);
+    size_t bytes = 0;
+    ovc_streamed_scene field = streamed_field(bytes);
+    auto plan = sized<ovc_plan>();
+    wrong.without_device("device NULL", api().plan_streamed(nullptr, nullptr, &field, &plan));
+    wrong.argument("scene NULL", api().plan_streamed(s.device, nullptr, nullptr, &plan));
+    wrong.argument("plan NULL", api().plan_streamed(s.device, nullptr, &field, nullptr));
+    auto unsized = ovc_plan{};
+    wrong.argument("struct_size 0", api().plan_streamed(s.device, nullptr, &field, &unsized));
+    field.read_corners = nullptr;
+    wrong.argument("read_corners NULL", api().plan_streamed(s.device, nullptr, &field, &plan));
+    field.read_corners = [](void*, uint32_t, uint64_t, uint64_t, void*) { return 1; };
+    wrong.on_device("stopped", OVC_ERROR_CANCELLED,
+                    api().plan_streamed(s.device, nullptr, &field, &plan));
+    return wrong.found();
+}
+
 ovc_result use_add_instance(Subject& s) {
     const AbiScene scene = new_scene(s);
     const ovc_mesh mesh = field_mesh();
@@ -382,6 +407,7 @@ constexpr Entry kSceneEntries[] = {
     OVC_ENTRY(update_instance, use_update_instance, misuse_update_instance),
     OVC_ENTRY(remove_mesh, use_remove_mesh, misuse_remove_mesh),
     OVC_ENTRY(save_streamed, use_save_streamed, misuse_save_streamed),
+    OVC_ENTRY(plan_streamed, use_plan_streamed, misuse_plan_streamed),
 };
 
 } // namespace

@@ -144,4 +144,5 @@ class ovc_api(c.Structure):
         ("remove_mesh", _call(_Handle, c.c_uint32)),
         ("save_streamed", _Pointer),
         ("prepare_process", _call(c.c_int)),
+        ("plan_streamed", _Pointer),
     ]
