@@ -8,6 +8,7 @@
 #include "core/system/parallel.h"
 #include "gpu/trace/tracer.h"
 #include "plugin/fallback/exact_fallback.h"
+#include "plugin/two_level/candidate_batch.h"
 #include "plugin/two_level/candidates.h"
 #include "plugin/two_level/query.h"
 #include "plugin/two_level/tracing.h"
@@ -131,6 +132,7 @@ public:
         if (!tracing_.watch.keeps_on())
             return;
         HitBatch<size_t> certain; // tagged with the index in `answers`
+        CandidateBatch<size_t> doubtful;
         Decided decided;
         std::vector<uint32_t> in_doubt;
         const auto look = [&](size_t j) {
@@ -143,10 +145,21 @@ public:
             else
                 look(j);
         };
+        const auto enter_nearest = [&](const Candidate& nearest, size_t j) {
+            enter_resolved(rays[j], answers[j], nearest, limit_of(rays[j], nearest), decided,
+                           go_on);
+        };
         for (size_t j = 0; j < rays.size(); ++j) {
             fetch_ahead(answers, j);
             if (!takes(rays[j], answers[j]))
                 continue;
+            if (has_plain_candidates(rays[j], answers[j])) {
+                doubtful.add(query_.rays[rays[j]], exclusion(rays[j]).skip,
+                             candidates_of(answers[j]), scene_, j);
+                if (!doubtful.has_room())
+                    doubtful.finish(enter_nearest, look);
+                continue;
+            }
             if (!is_certain_hit(rays[j], answers[j])) {
                 look(j);
                 continue;
@@ -157,6 +170,7 @@ public:
                 certain.finish(enter, look);
         }
         certain.finish(enter, look);
+        doubtful.finish(enter_nearest, look);
         fall_back(in_doubt, decided);
         enter_all(decided);
     }
@@ -190,15 +204,22 @@ private:
     /// Returns ray i as the host gave it.
     PreparedRay prepared(uint32_t i) const { return PreparedRay(query_.rays[i], exclusion(i)); }
 
-    /// Fetches the triangle of an answer some way behind the j-th, which is to be resolved soon.
+    /// Fetches the triangles of an answer some way behind the j-th, which is to be resolved soon.
     void fetch_ahead(std::span<const Answer> answers, size_t j) const {
         constexpr size_t kAhead = 8;
-        if (j + kAhead >= answers.size())
+        if (j + kAhead >= answers.size() || !tracing_.options.certify)
             return;
-        const uint32_t prim = answers[j + kAhead].prim;
-        if (prim >= OVC_MAX_TRIANGLES || Query::kAnyHit || !tracing_.options.certify)
+        const Candidates found = candidates_of(answers[j + kAhead]);
+        if (Query::kAnyHit && !found.has_further())
             return; // the corners will not be read
-        const TriangleId id = scene_.numbers.id(prim);
+        fetch(found.certain);
+        for (const uint32_t number : found.further)
+            fetch(number);
+    }
+    void fetch(uint32_t number) const {
+        if (number >= OVC_MAX_TRIANGLES)
+            return;
+        const TriangleId id = scene_.numbers.id(number);
         __builtin_prefetch(scene_.soup.chunks[id.mesh].address_of(id.prim));
     }
 
@@ -206,6 +227,20 @@ private:
     bool is_certain_hit(uint32_t i, const Answer& answer) const {
         return !Query::kAnyHit && tracing_.options.certify && answer.prim < OVC_MAX_TRIANGLES &&
                !candidates_of(answer).has_further() && !query_.was_hit(i);
+    }
+
+    /// Whether the answer names several triangles, and nothing but these decides about the ray.
+    bool has_plain_candidates(uint32_t i, const Answer& answer) const {
+        return tracing_.options.certify &&
+               (answer.prim < OVC_MAX_TRIANGLES || answer.prim == OVC_MISS) &&
+               candidates_of(answer).has_further() && !query_.was_hit(i) &&
+               exclusion(i).after.is_before_all();
+    }
+
+    /// Returns the t beyond which no hit of the ray can win against this one, or against none.
+    double limit_of(uint32_t i, const Candidate& nearest) const {
+        const double end = std::min(query_.rays[i].t_max, std::numeric_limits<double>::max());
+        return nearest.hit.is_hit() ? std::min(nearest.latest_t(), end) : end;
     }
 
     template <class GoOn>
@@ -256,13 +291,22 @@ private:
             nearest.offer(scene_.soup.triangle(query_.hit(i).id), query_.hit(i).id);
         if (!found.offer_to(nearest, p, scene_))
             return false;
-        if (nearest.is_hit())
-            enter_decided(i, nearest.best().found, decided);
-        if (answer.where != OVC_NO_LEAF && !(Query::kAnyHit && nearest.is_hit()))
-            go_on(i, answer.where, nearest.limit());
-        if (found.has_further()) // fall_back() counts the others
-            count_flagged(i);
+        enter_resolved(i, answer, nearest.best().found, nearest.limit(), decided, go_on);
         return true;
+    }
+
+    /// Enters the nearest of the candidates, or none where none is hit. limit: beyond which nothing
+    /// can win.
+    template <class GoOn>
+    void enter_resolved(uint32_t i, const Answer& answer, const Candidate& nearest, double limit,
+                        Decided& decided, GoOn&& go_on) {
+        const bool hit = nearest.hit.is_hit();
+        if (hit)
+            enter_decided(i, nearest, decided);
+        if (answer.where != OVC_NO_LEAF && !(Query::kAnyHit && hit))
+            go_on(i, answer.where, limit);
+        if (candidates_of(answer).has_further()) // fall_back() counts the others
+            count_flagged(i);
     }
 
     /// The kernel was asked about the ray up to its hit before, if there was one, so this one is
