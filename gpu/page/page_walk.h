@@ -167,6 +167,9 @@ private:
                 if (!below)
                     return false;
             }
+        // The rays ask about the children next, which may be far away in memory.
+        for (uint32_t child = 0; child < 4; ++child)
+            __builtin_prefetch(below + size_t(first_child + child) * OVC_UNIT_TEXELS);
         NodeMeeting meeting;
         meet_(rays_, here.rays, &texels[0].x, meeting);
         uint32_t by_place[4]; // the farthest first

@@ -56,7 +56,7 @@ private:
     bool offer(uint32_t number) {
         const TriangleId id = scene_.numbers.id(number);
         // Hits in the corner of the nearest one, and those behind some place, are told by names.
-        const bool at_once = !p_.after.is_before_all() || &approach_.ray() != &p_ ||
+        const bool at_once = !p_.after.is_before_all() || approach_.is_moved() ||
                              nearest_.best().found.support != Candidate::kAllCorners;
         if (!at_once)
             return offer_plainly(scene_.seen(id, p_.skip));
@@ -127,12 +127,17 @@ struct FewFound {
     Candidate found;        // the hit, not rounded; else one of the ray, or none, for RaysTogether
 };
 
-/// Traces a valid ray to its nearest hit, or with kAnyHit to some hit. Any thread.
+/// Traces a valid ray to its nearest hit, or with kAnyHit to some hit. Any thread. begin: a t
+/// before which the ray is known to hit nothing that counts.
 template <bool kAnyHit>
-FewFound trace_few(const BuiltScene& scene, const PreparedRay& p) {
+FewFound trace_few(const BuiltScene& scene, const PreparedRay& p,
+                   double begin = -std::numeric_limits<double>::infinity()) {
     FewTest<kAnyHit> few(scene, p);
+    PreparedRay way = few.approach().ray();
+    if (!few.approach().is_moved())
+        way.ray.t_min = std::max(way.ray.t_min, begin);
     walk_scene(
-        scene, few.approach().ray(), [&](uint32_t number) { return few.test(number); },
+        scene, way, [&](uint32_t number) { return few.test(number); },
         [&](double enter) { return few.limit(enter); });
     return {!few.gives_up(), few.found()};
 }
