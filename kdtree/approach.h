@@ -18,6 +18,7 @@ public:
     /// Returns the ray to walk along: p where that is near, else the same line to within the ray's
     /// margin, with a t of its own. Triangles found on the way must be tested against p itself.
     const PreparedRay& ray() const { return moved_ ? *moved_ : p_; }
+    bool is_moved() const { return moved_.has_value(); }
 
     /// Notes that p hits the triangle, which may lower the limit.
     void note_hit(const Triangle& triangle);

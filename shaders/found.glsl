@@ -5,52 +5,52 @@
 const float OVC_NEVER = 3.0e38;
 
 // A certain hit in [best_lo, best_hi], and the further candidates: triangles that may be hit, but
-// not certainly farther than the best. The two that may be hit first are named; of all others only
-// the min t is kept.
+// not certainly farther than the best. The last two are named; of all together it is known where
+// they may be hit.
 struct Found {
     float best_lo;
     float best_hi;
     uint prim;
-    float further_lo[2];
+    float further_lo;
+    float further_hi;
     uint further[2];
-    float others_lo;
+    int count; // of the further candidates
     vec2 weights; // fast precision: of the pair's corners except v0; `order` makes u and v of them
     uint order;
 };
 
 Found nothing_found(float t_end) {
-    return Found(OVC_NEVER, t_end, OVC_MISS, float[2](OVC_NEVER, OVC_NEVER),
-                 uint[2](OVC_NO_TRIANGLE, OVC_NO_TRIANGLE), OVC_NEVER, vec2(0.0), 8u);
+    return Found(OVC_NEVER, t_end, OVC_MISS, OVC_NEVER, -OVC_NEVER,
+                 uint[2](OVC_NO_TRIANGLE, OVC_NO_TRIANGLE), 0, vec2(0.0), 8u);
 }
 
-// Adds a candidate: keeps the two nearest of the further ones and this one.
-void add_further(inout Found found, float lo, uint prim) {
-    bool first = lo < found.further_lo[0];
-    bool second = lo < found.further_lo[1];
-    float no_first = greater(lo, found.further_lo[0]);
-    float no_second = greater(no_first, found.further_lo[1]);
-    found.further_lo[0] = lesser(lo, found.further_lo[0]);
-    found.further_lo[1] = lesser(no_first, found.further_lo[1]);
-    found.others_lo = lesser(no_second, found.others_lo);
-    found.further[1] = first ? found.further[0] : (second ? prim : found.further[1]);
-    found.further[0] = first ? prim : found.further[0];
+bool has_hit(Found found) { return found.prim != OVC_MISS; }
+
+void add_further(inout Found found, bool valid, float lo, float hi, uint prim) {
+    found.further_lo = lesser(valid ? lo : OVC_NEVER, found.further_lo);
+    found.further_hi = greater(valid ? hi : -OVC_NEVER, found.further_hi);
+    found.further[1] = valid ? found.further[0] : found.further[1];
+    found.further[0] = valid ? prim : found.further[0];
+    found.count += valid ? 1 : 0;
 }
 
 // Takes a candidate in. Returns true when it is now the best.
 bool take(inout Found found, Candidate c, bool valid, uint prim, uint order) {
-    bool possible = valid && c.possible && c.hi >= 0.0;
-#if OVC_PORTALS
-    // A hit beyond the end of a part is met in another part, and a triangle that parts share may be
-    // in doubt in several of them.
-    bool named = (prim == found.further[0] && found.further_lo[0] < OVC_NEVER) ||
-                 (prim == found.further[1] && found.further_lo[1] < OVC_NEVER);
-    possible = possible && c.lo <= found.best_hi && (c.certain || !named);
-#endif
+    bool possible = valid && c.possible && c.hi >= 0.0 && c.lo <= found.best_hi;
+    // A triangle that planes cut, or that parts share, may be in doubt several times.
+    bool named = (prim == found.further[0] && found.count > 0) ||
+                 (prim == found.further[1] && found.count > 1);
+    possible = possible && (c.certain || !named);
     bool better = possible && c.certain && (c.lo > 0.0 || OVC_CERTIFY == 0) &&
                   c.hi < found.best_hi;
     if (OVC_CERTIFY != 0) {
-        float lo = better ? found.best_lo : c.lo; // the one of the two that is not the best
-        add_further(found, possible ? lo : OVC_NEVER, better ? found.prim : prim);
+        bool behind = better && found.further_lo > c.hi; // the further candidates are
+        found.further_lo = behind ? OVC_NEVER : found.further_lo;
+        found.count = behind ? 0 : found.count;
+        // The one of the two that is not the best.
+        add_further(found, better ? found.best_lo <= c.hi : possible,
+                    better ? found.best_lo : c.lo, better ? found.best_hi : c.hi,
+                    better ? found.prim : prim);
     }
     found.best_lo = better ? c.lo : found.best_lo;
     found.best_hi = better ? c.hi : found.best_hi;
@@ -81,22 +81,18 @@ vec2 barycentric(Found found) {
     return vec2(u, v);
 }
 
-bool has_hit(Found found) { return found.prim != OVC_MISS; }
-
 #if OVC_PORTALS
 // Returns the same in another frame, rounded outwards. t_end: the ray's end there.
 Found in_times(Found found, Times from, Times to, float t_end) {
     bool hit = has_hit(found);
     Found there = found;
-    there.best_lo = hit ? earlier(found.best_lo, from, to) : OVC_NEVER;
+    there.best_lo = hit && found.best_lo < OVC_NEVER ? earlier(found.best_lo, from, to) : OVC_NEVER;
     there.best_hi = hit ? later(found.best_hi, from, to) : t_end;
-    for (int i = 0; i < 2; ++i) {
-        bool counts =
-            found.further_lo[i] < OVC_NEVER && !(hit && found.further_lo[i] > found.best_hi);
-        there.further_lo[i] = counts ? earlier(found.further_lo[i], from, to) : OVC_NEVER;
-    }
-    bool others = found.others_lo < OVC_NEVER && !(hit && found.others_lo > found.best_hi);
-    there.others_lo = others ? earlier(found.others_lo, from, to) : OVC_NEVER;
+    bool counts = found.count > 0 && !(hit && found.further_lo > found.best_hi);
+    there.count = counts ? found.count : 0;
+    there.further_lo = counts ? earlier(found.further_lo, from, to) : OVC_NEVER;
+    there.further_hi = counts ? later(found.further_hi, from, to) : -OVC_NEVER;
+    there.further_hi = there.further_hi == OVC_UNDECIDABLE ? OVC_NEVER : there.further_hi;
     return there;
 }
 #endif
@@ -108,20 +104,37 @@ float end_of_candidates(Found found) {
 }
 
 // Returns whether so many candidates count that none can be named.
-bool are_too_many(Found found) { return found.others_lo <= end_of_candidates(found); }
+bool are_too_many(Found found) {
+    return found.count > 2 && found.further_lo <= end_of_candidates(found);
+}
+
+// Returns a t before which the ray certainly hits nothing.
+float first_t(Found found) { return lesser(found.best_lo, found.further_lo); }
+
+// Ends a ray with two further candidates behind them, because most such rays pass a side that both
+// share, and hit one of them. Doubles trace the others on.
+void end_behind_candidates(inout Found found, bool any_hit) {
+    bool ends = OVC_CERTIFY != 0 && !any_hit && found.count > 1 &&
+                found.further_hi < lesser(found.best_lo, found.best_hi);
+    found.best_lo = ends ? OVC_NEVER : found.best_lo;
+    found.best_hi = ends ? found.further_hi : found.best_hi;
+    found.prim = ends ? OVC_ENDED : found.prim;
+}
 
 // The words of an answer from `leaf`.
 uvec4 answer_of(Found found, bool any_hit, uint leaf) {
     if (OVC_CERTIFY == 0 || (any_hit && found.prim != OVC_MISS))
         return uvec4(OVC_NO_TRIANGLE, OVC_NO_TRIANGLE, leaf, found.prim);
-    float end = end_of_candidates(found);
-    uint first = found.further_lo[0] <= end ? found.further[0] : OVC_NO_TRIANGLE;
-    uint second = found.further_lo[1] <= end ? found.further[1] : OVC_NO_TRIANGLE;
+    bool counts = found.further_lo <= end_of_candidates(found);
+    uint first = counts && found.count > 0 ? found.further[0] : OVC_NO_TRIANGLE;
+    uint second = counts && found.count > 1 ? found.further[1] : OVC_NO_TRIANGLE;
 #if OVC_PORTALS
     // A triangle may be in doubt in one part and certain in another.
     second = second == found.prim ? OVC_NO_TRIANGLE : second;
     first = first == found.prim ? second : first;
     second = first == second ? OVC_NO_TRIANGLE : second;
 #endif
-    return uvec4(first, second, leaf, are_too_many(found) ? OVC_FLAGGED : found.prim);
+    // Behind the end of the ray there may be something nearer than such a candidate.
+    bool beyond = found.prim == OVC_ENDED && found.further_hi > found.best_hi;
+    return uvec4(first, second, leaf, are_too_many(found) || beyond ? OVC_FLAGGED : found.prim);
 }

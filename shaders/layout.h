@@ -100,7 +100,10 @@
 // that the ray waits for, or OVC_NO_LEAF. w: the certain nearest hit in all pages that the ray met
 // before that link, or
 //   OVC_MISS      none
-//   OVC_FLAGGED   the kernel cannot tell
+//   OVC_FLAGGED   the kernel cannot tell; y: a t (float bits) in the tree's frame, before which
+//                 the ray hits nothing in all pages that it met
+//   OVC_ENDED     none; behind x and y the ray was not traced on. If it hits neither, the kernel
+//                 cannot tell
 //   OVC_CAPPED    a loop was ended before it was done, or the stack was full
 // x, y: up to two more candidates, which may be hit nearer than w, or OVC_NO_TRIANGLE. A triangle
 // that is named neither in w nor here is certainly not the answer.
@@ -109,6 +112,7 @@
 #define OVC_MISS 0x7fffffffu
 #define OVC_FLAGGED 0x7ffffffeu
 #define OVC_CAPPED 0x7ffffffdu
+#define OVC_ENDED 0x7ffffffcu
 #define OVC_MAX_TRIANGLES 0x7ffffff0u
 // The compute kernel writes its answers to a buffer in four planes, w x y z, one word a ray, in the
 // order of the rays. It does not write a miss without candidates, because the host has put OVC_MISS

@@ -64,6 +64,9 @@ Found in_times(Found found, Times from, Times to, float t_end) {
 // Returns whether so many triangles may be hit that not all can be named.
 bool are_too_many(Found found) { return found.further[2] != OVC_NO_TRIANGLE; }
 
+float first_t(Found found) { return -3.0e38; } // not known
+void end_behind_candidates(inout Found found, bool any_hit) {}
+
 // The words of an answer from `leaf`. They do not tell which triangle is hit.
 uvec4 answer_of(Found found, bool any_hit, uint leaf) {
     if (found.best_hi == OVC_ENOUGH)

@@ -63,7 +63,20 @@ bool take_rays(int first, Tree tree, out Packet packet, out Found found[OVC_PACK
 }
 #endif
 
-void give_answers(int first, Packet packet, Found found[OVC_PACKET], bool ended, int rounds) {
+const float OVC_ANYWHERE = -3.0e38; // a t before all others
+
+// Returns a t before which the ray certainly hits nothing, in the frame of the top-level tree.
+float begin_of(Found found, Place place) {
+#if OVC_PORTALS
+    return earlier(first_t(found), place.part, place.scene);
+#else
+    return first_t(found);
+#endif
+}
+
+// ended: not lost on the way; whole: nor given up as hopeless.
+void give_answers(int first, Packet packet, Found found[OVC_PACKET], bool ended, bool whole,
+                  int rounds) {
     for (int k = 0; k < OVC_PACKET; ++k) {
         uvec4 answer = answer_of(found[k], packet.any_hit[k], OVC_NO_LEAF);
 #if OVC_MAY_WAIT
@@ -80,7 +93,13 @@ void give_answers(int first, Packet packet, Found found[OVC_PACKET], bool ended,
         if (found[k].prim != OVC_MISS)
             answer.xy = uvec2(floatBitsToUint(t), packUnorm2x16(barycentric(found[k])));
 #endif
-        answer.w = found[k].best_hi == OVC_UNDECIDABLE ? OVC_FLAGGED : answer.w;
+        bool undecidable = found[k].best_hi == OVC_UNDECIDABLE;
+        answer.w = undecidable ? OVC_FLAGGED : answer.w;
+        if (answer.w == OVC_FLAGGED) {
+            bool tells = whole && !undecidable;
+            answer.x = 0u;
+            answer.y = floatBitsToUint(tells ? begin_of(found[k], packet.place) : OVC_ANYWHERE);
+        }
 #if OVC_COUNTS
         answer.x = uint(rounds);
         answer.y = uint(units_fetched);
@@ -94,6 +113,10 @@ void give_answers(int first, Packet packet, Found found[OVC_PACKET], bool ended,
 bool trace_on(int first, inout Descent d, inout Packet packet, inout Found found[OVC_PACKET],
               int max_rounds, inout int rounds) {
     bool ended = run(d, found, packet, 0, max_rounds, rounds);
+#if OVC_REFILL // else after each round
+    for (int k = 0; k < OVC_PACKET; ++k)
+        end_behind_candidates(found[k], packet.any_hit[k]);
+#endif
 #if OVC_PORTALS
     ended = ended && !enter_portal(first, d, packet, found[0]);
 #endif
@@ -121,13 +144,13 @@ void trace_once(int ray) {
     int rounds = 0;
     d.done = !take_rays(ray, tree, packet, found);
     int look = min(OVC_PATIENCE, OVC_MAX_ROUNDS); // at this round
-    bool ended;
+    bool whole, ended;
     do {
-        ended = trace_on(ray, d, packet, found, look, rounds);
-        ended = ended || (rounds >= look && are_hopeless(found));
+        whole = trace_on(ray, d, packet, found, look, rounds);
+        ended = whole || (rounds >= look && are_hopeless(found));
         look = rounds >= look ? min(look + OVC_PATIENCE, OVC_MAX_ROUNDS) : look;
     } while (!ended && rounds < OVC_MAX_ROUNDS);
-    give_answers(ray, packet, found, ended && !d.lost, rounds);
+    give_answers(ray, packet, found, ended && !d.lost, whole, rounds);
 }
 #else
 // Rounds between two looks at which lanes have an answer or have come to a portal; more if taking
@@ -153,14 +176,14 @@ void trace_with_refill(int begin, int end) {
     while (ray < end) {
         bool enough = rounds >= OVC_MAX_ROUNDS;
         int own = 0;
-        bool ended = trace_on(ray, d, packet, found, enough ? 1 : OVC_REFILL_ROUNDS, own);
+        bool whole = trace_on(ray, d, packet, found, enough ? 1 : OVC_REFILL_ROUNDS, own);
         rounds += OVC_REFILL_ROUNDS + 1;
         ++looks;
-        ended = ended || (looks > OVC_PATIENCE / OVC_REFILL_ROUNDS && are_hopeless(found));
+        bool ended = whole || (looks > OVC_PATIENCE / OVC_REFILL_ROUNDS && are_hopeless(found));
         bool ready = ended || enough;
         uint ready_lanes = uint(ballotARB(ready));
         if (ready) {
-            give_answers(ray, packet, found, ended && !d.lost, rounds);
+            give_answers(ray, packet, found, ended && !d.lost, whole, rounds);
             ray = next + bitCount(ready_lanes & lanes_before) * OVC_PACKET;
             start(d, tree);
             d.done = !take_rays(ray, tree, packet, found);

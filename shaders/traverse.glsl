@@ -235,6 +235,9 @@ void take_pairs(inout Found found[OVC_PACKET], Unit pair, Packet packet, bool he
                               Line(packet.axes, packet.org[k], packet.shear[k]), packet.skip[k],
                               packet.first_number);
         found[k].best_hi = packet.any_hit[k] && took ? OVC_ENOUGH : found[k].best_hi;
+#if !OVC_REFILL
+        end_behind_candidates(found[k], packet.any_hit[k]);
+#endif
     }
 }
 

@@ -38,7 +38,11 @@ Quotient<double> over_det(const BoundedSolution<double>& s, const DoubleDouble& 
 } // namespace
 
 RefinedAnswer refined_candidate(const PreparedRay& p, const Triangle& triangle, TriangleId id) {
-    const BoundedSolution<double> s = solution_of(p, triangle);
+    return refined_candidate(solution_of(p, triangle), p.ray.t_min, p.ray.t_max, id);
+}
+
+RefinedAnswer refined_candidate(const BoundedSolution<double>& s, double t_min, double t_max,
+                                TriangleId id) {
     const int w = sign_of(s.w(), s.w_error());
     const int u = sign_of(s.value.u, s.error.u);
     const int v = sign_of(s.value.v, s.error.v);
@@ -49,7 +53,7 @@ RefinedAnswer refined_candidate(const PreparedRay& p, const Triangle& triangle, 
     if (w == 0 || u == 0 || v == 0)
         return {};
     const Quotient<double> t = over_det(s, s.value.t, s.error.t);
-    const int behind = compare(t, p.ray.t_min), beyond = compare(t, p.ray.t_max);
+    const int behind = compare(t, t_min), beyond = compare(t, t_max);
     if (behind < 0 || beyond > 0)
         return {true, std::nullopt};
     const double hi = t.value.hi;

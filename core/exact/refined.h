@@ -17,6 +17,9 @@ struct RefinedAnswer {
 
 /// Returns the answer of exact_candidate() for finite corners, where it is known.
 RefinedAnswer refined_candidate(const PreparedRay& p, const Triangle& triangle, TriangleId id);
+/// The same from what solve() has found for the ray and the triangle. No hit lies at an infinite t.
+RefinedAnswer refined_candidate(const BoundedSolution<double>& solution, double t_min, double t_max,
+                                TriangleId id);
 
 /// Returns the hit of a lane, of which round_hits() has found what it could: t, u and v rounded
 /// once. support: as in Candidate.

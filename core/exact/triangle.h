@@ -211,10 +211,14 @@ public:
             return true;
         std::optional<Candidate> found =
             candidate(p_, triangle, id, [&](auto&&...) { return in_doubt(triangle, id); });
-        if (!found || !counts(*found, triangle))
+        return found && enter(*found, triangle);
+    }
+    /// Enters a hit that candidate() would find. Returns the same as offer().
+    bool enter(Candidate found, const Triangle& triangle) {
+        if (!counts(found, triangle))
             return false;
-        if (!is_hit() || best_.order(p_, *found, triangle) < 0)
-            best_ = {*found, triangle};
+        if (!is_hit() || best_.order(p_, found, triangle) < 0)
+            best_ = {found, triangle};
         return true;
     }
 

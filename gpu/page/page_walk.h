@@ -142,7 +142,7 @@ private:
     RaySet still_on_way(const UnitOnWay& unit) {
         RaySet still = 0;
         for_each_ray(unit.rays, [&](uint32_t i) {
-            const double to = rays_.rays[i].to = limit_(i);
+            const double to = rays_.rays[i].to = limit_(i, unit.enter);
             still |= RaySet(unit.enter <= to) << i;
         });
         return still;
@@ -167,6 +167,9 @@ private:
                 if (!below)
                     return false;
             }
+        // The rays ask about the children next, which may be far away in memory.
+        for (uint32_t child = 0; child < 4; ++child)
+            __builtin_prefetch(below + size_t(first_child + child) * OVC_UNIT_TEXELS);
         NodeMeeting meeting;
         meet_(rays_, here.rays, &texels[0].x, meeting);
         uint32_t by_place[4]; // the farthest first
@@ -201,9 +204,10 @@ private:
 
 /// Calls visit(i, rays) -> bool (true: stop) for the number i of each triangle whose packed box,
 /// widened by the rays' rounding margins, some of the rays meet, and enter_portal(number, rays) ->
-/// bool for each portal that they meet so: ray r between its t_min and limit(r), where t is that of
-/// the ray itself. Goes to the nearest children first, as the kernel does, but to pairs before
-/// nodes. Returns true when one of the calls stopped it. tree: the units of a page or of a
+/// bool for each portal that they meet so: ray r between its t_min and limit(r, enter), where t is
+/// that of the ray itself, and `enter` the t at which the first ray comes to what is next. Goes to
+/// the nearest children first, as the kernel does, but to pairs before nodes. Returns true when one
+/// of the calls stopped it. tree: the units of a page or of a
 /// top-level tree; header: the number of the header's unit in them; units_of(page): the units that
 /// the tree's links lead to, null where a page is missing. Those of a page are not used any more
 /// when the next page is asked for. walked(r): ray r in the frame of the tree.
@@ -242,7 +246,7 @@ bool walk_tree(const TopLevel& top, std::span<const Page> pages, const Leaf& sce
     return walk_tree_together(
         top, [&](uint32_t page) { return pages[page].view().data(); }, scene, 1,
         [&](uint32_t) -> const PreparedRay& { return p; },
-        [&](uint32_t i, RaySet) { return visit(i); }, [&](uint32_t) { return limit(); });
+        [&](uint32_t i, RaySet) { return visit(i); }, [&](uint32_t, double) { return limit(); });
 }
 
 /// Walks one page with one ray. leaf: its box and frame.
@@ -252,7 +256,7 @@ bool walk_page(const Page& page, const Leaf& leaf, const PreparedRay& p, Visit&&
     return walk_units(
         page.view(), 0, NoPages(), 1, [&](uint32_t) { return walked_ray(leaf, p); },
         [&](uint32_t i, RaySet) { return visit(i); }, [](uint32_t, RaySet) { return false; },
-        [&](uint32_t) { return limit(); });
+        [&](uint32_t, double) { return limit(); });
 }
 
 } // namespace ovc

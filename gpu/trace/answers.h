@@ -25,6 +25,8 @@ struct Answer {
 
     /// Certified precision: triangles that may be the answer as well, or OVC_NO_TRIANGLE.
     std::span<const uint32_t, 2> further() const { return std::span(words).first<2>(); }
+    /// Certified precision, OVC_FLAGGED: a t in the tree's frame, before which nothing is hit.
+    float first_t() const { return std::bit_cast<float>(words[1]); }
     /// Fast precision: the ray's t at the hit.
     double t() const { return std::bit_cast<double>(uint64_t(words[1]) << 32 | words[0]); }
     /// Fast precision: barycentric coordinates of the hit, in [0, 1].

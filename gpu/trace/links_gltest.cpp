@@ -66,9 +66,10 @@ protected:
         const auto offer = [&](TriangleId id) { nearest.offer(soup.triangle(id), id); };
         if (way.hit.is_hit())
             offer(way.hit.id);
-        for (const uint32_t number : {answer.prim, answer.words[0], answer.words[1]})
-            if (number < OVC_MAX_TRIANGLES)
-                offer(numbers.id(number));
+        if (answer.prim != OVC_FLAGGED)
+            for (const uint32_t number : {answer.prim, answer.words[0], answer.words[1]})
+                if (number < OVC_MAX_TRIANGLES)
+                    offer(numbers.id(number));
         way.hit = nearest.hit();
         way.limit = nearest.limit();
     }

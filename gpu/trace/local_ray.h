@@ -9,7 +9,9 @@
 #include "kdtree/partition.h"
 #include "shaders/layout.h"
 
+#include <cmath>
 #include <cstdint>
+#include <limits>
 
 namespace ovc {
 
@@ -34,6 +36,13 @@ static_assert(sizeof(ResumedRay) == OVC_RESUMED_RAY_TEXELS * 16);
 struct LocalTime {
     double enter = 0;
     double speed = 1;
+
+    /// Returns a t of the ray that is not after the local t, whose place a kernel may have counted
+    /// with a rounding (shaders/times.glsl). Minus infinity for a NaN, and for what is before all.
+    double begin_of(float local) const {
+        const double t = local, error = std::abs(t) * 0x1p-22 + 0x1p-28;
+        return t > -1e30 ? enter + (t - error) / speed : -std::numeric_limits<double>::infinity();
+    }
 };
 
 /// Returns the ray in the frame of a leaf, from where it enters the leaf's box, and sets `time`.

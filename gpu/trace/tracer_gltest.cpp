@@ -59,6 +59,12 @@ protected:
     }
 
     void expect_truth(const Soup& soup, std::span<const Ray> rays);
+    /// Returns the t of the ray before which a flagged answer says that it hits nothing.
+    double begin_of(const Ray& ray, const Answer& answer) const {
+        LocalTime time;
+        local_ray(*tracer->form().scene, ray, OVC_NO_TRIANGLE, false, time);
+        return time.begin_of(answer.first_t());
+    }
 
     static constexpr Ray kNoRay{dvec3(0), 0, dvec3(0, 0, 1), -1};
     bool with_host_pages = true; // if the device takes them
@@ -100,6 +106,9 @@ void KernelGl::expect_truth(const Soup& soup, std::span<const Ray> rays) {
             if (hit) {
                 ASSERT_EQ(numbers.id(nearest[i].prim), expected.id) << "ray " << i;
             }
+        }
+        if (nearest[i].prim == OVC_FLAGGED) {
+            ASSERT_LE(begin_of(rays[i], nearest[i]), expected.t) << "ray " << i;
         }
         if (is_certain(any[i])) {
             ASSERT_EQ(any[i].prim != OVC_MISS, expected.is_hit()) << "ray " << i;
@@ -214,6 +223,23 @@ TEST_F(KernelGl, FlagsRaysAtSharedEdgesAndVertices) {
         rays.push_back({soup.triangle(id)[0] - dvec3(0, 0, 0.25), 0, dvec3(0, 0, 1)});
     for (const Answer& answer : trace(rays))
         EXPECT_EQ(answer.prim, OVC_FLAGGED);
+}
+
+TEST_F(KernelGl, TellsWhereTheCandidatesOfAFlaggedRayBegin) {
+    const Soup soup = test::closed_grid(16);
+    for (const bool compute : {false, true}) {
+        load(soup, {}, compute);
+        std::vector<Ray> rays;
+        for (const TriangleId id : leaf_of(level1).triangles)
+            rays.push_back({soup.triangle(id)[0] - dvec3(0, 0, 2), 0, dvec3(0, 0, 0.5)});
+        const std::vector<Answer> answers = trace(rays);
+        for (size_t i = 0; i < rays.size(); ++i) {
+            ASSERT_EQ(answers[i].prim, OVC_FLAGGED);
+            const double t = test::brute_force(soup, leaf_of(level1).triangles, rays[i]).t;
+            EXPECT_LE(begin_of(rays[i], answers[i]), t) << "ray " << i;
+            EXPECT_GT(begin_of(rays[i], answers[i]), t - 0.35) << "ray " << i;
+        }
+    }
 }
 
 TEST_F(KernelGl, NamesBothTrianglesAtASharedEdge) {

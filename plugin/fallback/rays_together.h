@@ -45,7 +45,7 @@ public:
         const auto prepared = [&](uint32_t r) -> const PreparedRay& {
             return rays_[r].approach.ray();
         };
-        const auto limit = [&](uint32_t r) { return limits_[r]; };
+        const auto limit = [&](uint32_t r, double) { return limits_[r]; };
         const RaySet all = RaySet((uint64_t(1) << rays_.size()) - 1);
         if (!walk_scene_together(scene_, all, prepared, test, limit))
             finish();

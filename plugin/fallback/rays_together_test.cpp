@@ -93,6 +93,7 @@ public:
             for (size_t i = first; i < first + size; ++i) {
                 const FewFound few = trace_few<kAnyHit>(*scene_, rays_[i]);
                 many += !few.is_answer;
+                expect_same_from_begin<kAnyHit>(i);
                 expect_hit<kAnyHit>(i, trace_exactly<kAnyHit>(*scene_, rays_[i]));
                 together.add(rays_[i], few.found.hit.id);
             }
@@ -113,6 +114,19 @@ private:
             without.after = HitPlace(first);
         rays_.emplace_back(ray, without);
         expected_.push_back(hit_of(rays_.back()));
+    }
+
+    /// A walk that is told where the ray's hits begin finds what it finds without.
+    template <bool kAnyHit>
+    void expect_same_from_begin(size_t i) const {
+        const Hit& expected = expected_[i];
+        const FewFound few = trace_few<kAnyHit>(*scene_, rays_[i], expected.t);
+        if (!few.is_answer)
+            return;
+        ASSERT_EQ(few.found.hit.is_hit(), expected.is_hit()) << "ray " << i;
+        if (!kAnyHit) {
+            ASSERT_EQ(few.found.hit.id, expected.id) << "ray " << i;
+        }
     }
 
     Hit hit_of(const PreparedRay& p) const {

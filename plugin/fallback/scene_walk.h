@@ -29,12 +29,13 @@ bool walk_scene_together(const BuiltScene& scene, RaySet all, Prepared&& prepare
     });
 }
 
-/// The same with one ray. Calls visit(i) and limit().
+/// The same with one ray. Calls visit(i) and limit(enter).
 template <class Visit, class Limit>
 bool walk_scene(const BuiltScene& scene, const PreparedRay& p, Visit&& visit, Limit&& limit) {
     return walk_scene_together(
         scene, 1, [&](uint32_t) -> const PreparedRay& { return p; },
-        [&](uint32_t i, RaySet) { return visit(i); }, [&](uint32_t) { return limit(); });
+        [&](uint32_t i, RaySet) { return visit(i); },
+        [&](uint32_t, double enter) { return limit(enter); });
 }
 
 } // namespace ovc

@@ -4,9 +4,12 @@
 // rule.
 #pragma once
 
+#include "core/lanes/doubt_batch.h"
 #include "plugin/build/built_scene.h"
 
 #include <array>
+#include <cassert>
+#include <cstddef>
 
 namespace ovc {
 
@@ -31,6 +34,74 @@ struct Candidates {
                 scene.offer(nearest, p, scene.numbers.id(number));
         return true;
     }
+};
+
+/// Collects the candidates of several rays, to test them at once in doubled precision. Most lie at
+/// a side or corner that the ray passes by a rounding, which that precision tells. Tag: whatever
+/// the caller wants back with each ray.
+template <class Tag>
+class CandidateBatch {
+public:
+    bool has_room() const { return pairs_.room() >= kMaxOfRay; }
+
+    /// Adds a ray, which does not see the triangle `skip`, and its candidates. Needs room.
+    void add(const Ray& ray, TriangleId skip, const Candidates& found, const BuiltScene& scene,
+             const Tag& tag) {
+        assert(has_room());
+        const auto add = [&](uint32_t number, bool certain) {
+            const TriangleId id = scene.seen(number, skip);
+            pairs_.add(ray, scene.soup.triangle(id), id, {count_, certain});
+        };
+        if (found.certain != OVC_MISS)
+            add(found.certain, true);
+        for (const uint32_t number : found.further)
+            if (number != OVC_NO_TRIANGLE)
+                add(number, false);
+        asked_[count_++] = {tag, {}, false};
+    }
+
+    /// Empties the batch. Calls decided(nearest, tag) for each ray with the nearest hit of its
+    /// candidates, or none; or unclear(tag) where doubled precision cannot tell it, or does not
+    /// confirm the certain hit.
+    template <class Decided, class Unclear>
+    void finish(Decided&& decided, Unclear&& unclear) {
+        pairs_.finish([&](const RefinedAnswer& answer, const Triangle&, TriangleId, Pair pair) {
+            asked_[pair.asked].take(answer, pair.certain);
+        });
+        for (size_t i = 0; i < count_; ++i)
+            if (asked_[i].is_unclear)
+                unclear(asked_[i].tag);
+            else
+                decided(asked_[i].nearest, asked_[i].tag);
+        count_ = 0;
+    }
+
+private:
+    static constexpr int kMaxOfRay = 3;
+
+    struct Asked {
+        Tag tag;
+        Candidate nearest;
+        bool is_unclear;
+
+        void take(const RefinedAnswer& answer, bool certain) {
+            is_unclear = is_unclear || !answer.known || (certain && !answer.candidate);
+            if (is_unclear || !answer.candidate || answer.candidate->hit.id == nearest.hit.id)
+                return;
+            const int order = nearest.hit.is_hit() ? answer.candidate->compare_t(nearest) : -1;
+            is_unclear = order == 0;
+            if (order < 0)
+                nearest = *answer.candidate;
+        }
+    };
+    struct Pair {
+        size_t asked;
+        bool certain;
+    };
+
+    DoubtBatch<Pair> pairs_;
+    std::array<Asked, MeetingLanes::kCount> asked_{};
+    size_t count_ = 0;
 };
 
 } // namespace ovc

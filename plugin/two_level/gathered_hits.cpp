@@ -22,7 +22,7 @@ std::vector<uint32_t> numbers_near(const BuiltScene& scene, const PreparedRay& p
         numbers.push_back(number);
         return false;
     };
-    walk_scene(scene, approach.ray(), note, [&] { return approach.limit(nothing); });
+    walk_scene(scene, approach.ray(), note, [&](double) { return approach.limit(nothing); });
     // Leaves share triangles.
     std::ranges::sort(numbers);
     const auto repeated = std::ranges::unique(numbers);

@@ -19,7 +19,10 @@ template <class Query>
 class OnePass {
 public:
     OnePass(const Tracing& tracing, PassRunner& passes, const Query& query)
-        : watch_(tracing.watch), passes_(passes), query_(query), resolver_(tracing, query) {}
+        : watch_(tracing.watch),
+          passes_(passes),
+          query_(query),
+          resolver_(tracing, query, /* are_whole= */ true) {}
 
     Result<Done> run() {
         assert(passes_.all_resident());

@@ -32,9 +32,15 @@ void in_lanes(std::span<const uint32_t> rays, Body&& body) {
         body(rays.subspan(first, std::min<size_t>(RayLanes::kCount, rays.size() - first)), first);
 }
 
-/// Returns the candidates of an answer in certified precision that names triangles or OVC_MISS.
+/// Whether an answer in certified precision tells which triangles the ray may hit.
+inline bool names_candidates(const Answer& answer) {
+    return answer.prim != OVC_FLAGGED && answer.prim != OVC_CAPPED;
+}
+
+/// Returns the candidates of an answer that names them.
 inline Candidates candidates_of(const Answer& answer) {
-    return {answer.prim, {answer.further()[0], answer.further()[1]}};
+    const uint32_t certain = answer.prim == OVC_ENDED ? OVC_MISS : answer.prim;
+    return {certain, {answer.further()[0], answer.further()[1]}};
 }
 
 /// Returns the hit with t, u and v of where the ray meets the triangle's plane, computed in
@@ -57,10 +63,13 @@ inline Hit in_doubles(const Hit& hit, const Ray& ray, const Triangle& triangle) 
 template <class Query>
 class Resolver {
 public:
-    Resolver(const Tracing& tracing, const Query& query)
+    /// are_whole: no answer is that of a ray that waits, or has waited, for a page.
+    Resolver(const Tracing& tracing, const Query& query, bool are_whole)
         : tracing_(tracing),
           scene_(tracing.scene),
           query_(query),
+          are_whole_(are_whole),
+          bounds_(scene_leaf(scene_.level1.bounds)),
           ahead_{scene_.level1.bounds.empty(), scene_.level1.padding,
                  LanesBox(scene_.level1.bounds),
                  LanesBox(scene_.level1.bounds.padded(scene_.level1.padding))} {}
@@ -131,11 +140,12 @@ public:
         if (!tracing_.watch.keeps_on())
             return;
         HitBatch<size_t> certain; // tagged with the index in `answers`
+        CandidateBatch<size_t> doubtful;
         Decided decided;
-        std::vector<uint32_t> in_doubt;
+        std::vector<InDoubt> in_doubt;
         const auto look = [&](size_t j) {
             if (!resolve_one(rays[j], answers[j], decided, go_on))
-                in_doubt.push_back(rays[j]);
+                in_doubt.push_back({rays[j], begin_of(rays[j], answers[j])});
         };
         const auto enter = [&](const Hit& hit, size_t j) {
             if (hit.t > exclusion(rays[j]).after.t)
@@ -143,10 +153,23 @@ public:
             else
                 look(j);
         };
+        const auto enter_nearest = [&](const Candidate& nearest, size_t j) {
+            if (answers[j].prim == OVC_ENDED && !nearest.hit.is_hit())
+                return look(j);
+            enter_resolved(rays[j], answers[j], nearest, limit_of(rays[j], nearest), decided,
+                           go_on);
+        };
         for (size_t j = 0; j < rays.size(); ++j) {
             fetch_ahead(answers, j);
             if (!takes(rays[j], answers[j]))
                 continue;
+            if (has_plain_candidates(rays[j], answers[j])) {
+                doubtful.add(query_.rays[rays[j]], exclusion(rays[j]).skip,
+                             candidates_of(answers[j]), scene_, j);
+                if (!doubtful.has_room())
+                    doubtful.finish(enter_nearest, look);
+                continue;
+            }
             if (!is_certain_hit(rays[j], answers[j])) {
                 look(j);
                 continue;
@@ -157,6 +180,7 @@ public:
                 certain.finish(enter, look);
         }
         certain.finish(enter, look);
+        doubtful.finish(enter_nearest, look);
         fall_back(in_doubt, decided);
         enter_all(decided);
     }
@@ -172,6 +196,11 @@ private:
     using Together = RaysTogether<Query::kAnyHit>;
     /// Hits that are decided, but not rounded, each tagged with its ray.
     using Decided = RoundingBatch<uint32_t>;
+    /// A ray for the exact fallback, and a t before which it hits nothing.
+    struct InDoubt {
+        uint32_t i;
+        double begin;
+    };
     /// A ray that meets many triangles, and one that it hits, or none.
     struct Left {
         uint32_t i;
@@ -187,18 +216,43 @@ private:
         return without;
     }
 
+    /// Returns a t before which ray i, of which this is the answer, hits nothing.
+    double begin_of(uint32_t i, const Answer& answer) const {
+        constexpr double kUnknown = -std::numeric_limits<double>::infinity();
+        if (Query::kAnyHit || !are_whole_ || answer.prim != OVC_FLAGGED ||
+            !exclusion(i).after.is_before_all())
+            return kUnknown;
+        const Ray ray = query_.rays[i];
+        LocalTime time;
+        if (!scene_.top.portals.empty())
+            local_ray(scene_.top.portals[0], ray, OVC_NO_TRIANGLE, false, time);
+        else if (scene_.top.way_in)
+            local_ray(*scene_.top.way_in, ray, OVC_NO_TRIANGLE, false, time);
+        else
+            local_ray(bounds_, ray, OVC_NO_TRIANGLE, false, time);
+        return time.begin_of(answer.first_t());
+    }
+
     /// Returns ray i as the host gave it.
     PreparedRay prepared(uint32_t i) const { return PreparedRay(query_.rays[i], exclusion(i)); }
 
-    /// Fetches the triangle of an answer some way behind the j-th, which is to be resolved soon.
+    /// Fetches the triangles of an answer some way behind the j-th, which is to be resolved soon.
     void fetch_ahead(std::span<const Answer> answers, size_t j) const {
         constexpr size_t kAhead = 8;
-        if (j + kAhead >= answers.size())
+        if (j + kAhead >= answers.size() || !tracing_.options.certify ||
+            !names_candidates(answers[j + kAhead]))
             return;
-        const uint32_t prim = answers[j + kAhead].prim;
-        if (prim >= OVC_MAX_TRIANGLES || Query::kAnyHit || !tracing_.options.certify)
+        const Candidates found = candidates_of(answers[j + kAhead]);
+        if (Query::kAnyHit && !found.has_further())
             return; // the corners will not be read
-        const TriangleId id = scene_.numbers.id(prim);
+        fetch(found.certain);
+        for (const uint32_t number : found.further)
+            fetch(number);
+    }
+    void fetch(uint32_t number) const {
+        if (number >= OVC_MAX_TRIANGLES)
+            return;
+        const TriangleId id = scene_.numbers.id(number);
         __builtin_prefetch(scene_.soup.chunks[id.mesh].address_of(id.prim));
     }
 
@@ -206,6 +260,19 @@ private:
     bool is_certain_hit(uint32_t i, const Answer& answer) const {
         return !Query::kAnyHit && tracing_.options.certify && answer.prim < OVC_MAX_TRIANGLES &&
                !candidates_of(answer).has_further() && !query_.was_hit(i);
+    }
+
+    /// Whether the answer names several triangles, and nothing but these decides about the ray.
+    bool has_plain_candidates(uint32_t i, const Answer& answer) const {
+        return tracing_.options.certify && names_candidates(answer) &&
+               candidates_of(answer).has_further() && !query_.was_hit(i) &&
+               exclusion(i).after.is_before_all();
+    }
+
+    /// Returns the t beyond which no hit of the ray can win against this one, or against none.
+    double limit_of(uint32_t i, const Candidate& nearest) const {
+        const double end = std::min(query_.rays[i].t_max, std::numeric_limits<double>::max());
+        return nearest.hit.is_hit() ? std::min(nearest.latest_t(), end) : end;
     }
 
     template <class GoOn>
@@ -233,7 +300,7 @@ private:
     template <class GoOn>
     bool resolve_one(uint32_t i, const Answer& answer, Decided& decided, GoOn&& go_on) {
         capped_ += answer.prim == OVC_CAPPED;
-        if (answer.prim == OVC_FLAGGED || answer.prim == OVC_CAPPED)
+        if (!names_candidates(answer))
             return false;
         if (tracing_.options.certify)
             return resolve_candidates(i, answer, decided, go_on);
@@ -251,18 +318,31 @@ private:
             return true;
         }
         const PreparedRay p = prepared(i);
+        // A hit that was found before may lie behind something beyond the end of the ray.
+        const bool was_ended = answer.prim == OVC_ENDED;
+        if (was_ended && (query_.was_hit(i) || !p.after.is_before_all()))
+            return false;
         Nearest nearest = scene_.nearest_of(p);
         if (query_.was_hit(i))
             nearest.offer(scene_.soup.triangle(query_.hit(i).id), query_.hit(i).id);
-        if (!found.offer_to(nearest, p, scene_))
+        if (!found.offer_to(nearest, p, scene_) || (was_ended && !nearest.is_hit()))
             return false;
-        if (nearest.is_hit())
-            enter_decided(i, nearest.best().found, decided);
-        if (answer.where != OVC_NO_LEAF && !(Query::kAnyHit && nearest.is_hit()))
-            go_on(i, answer.where, nearest.limit());
-        if (found.has_further()) // fall_back() counts the others
-            count_flagged(i);
+        enter_resolved(i, answer, nearest.best().found, nearest.limit(), decided, go_on);
         return true;
+    }
+
+    /// Enters the nearest of the candidates, or none where none is hit. limit: beyond which nothing
+    /// can win.
+    template <class GoOn>
+    void enter_resolved(uint32_t i, const Answer& answer, const Candidate& nearest, double limit,
+                        Decided& decided, GoOn&& go_on) {
+        const bool hit = nearest.hit.is_hit();
+        if (hit)
+            enter_decided(i, nearest, decided);
+        if (answer.where != OVC_NO_LEAF && !(Query::kAnyHit && hit))
+            go_on(i, answer.where, limit);
+        if (candidates_of(answer).has_further()) // fall_back() counts the others
+            count_flagged(i);
     }
 
     /// The kernel was asked about the ray up to its hit before, if there was one, so this one is
@@ -285,21 +365,22 @@ private:
     }
 
     /// Answers the rays exactly. Those that meet many triangles are traced together.
-    void fall_back(std::span<const uint32_t> rays, Decided& decided) {
+    void fall_back(std::span<const InDoubt> rays, Decided& decided) {
         std::vector<FewFound> few(rays.size());
         run(rays.size(), /* worth= */ 8, [&](size_t j) {
-            count_fallback(rays[j]);
+            const auto [i, begin] = rays[j];
+            count_fallback(i);
             if (tracing_.watch.keeps_on())
-                few[j] = trace_few<Query::kAnyHit>(scene_, prepared(rays[j]));
+                few[j] = trace_few<Query::kAnyHit>(scene_, prepared(i), begin);
         });
         if (!tracing_.watch.keeps_on())
             return;
         std::vector<Left> left;
         for (size_t j = 0; j < rays.size(); ++j)
             if (few[j].is_answer)
-                enter_decided(rays[j], few[j].found, decided);
+                enter_decided(rays[j].i, few[j].found, decided);
             else
-                left.push_back({rays[j], few[j].found.hit.id});
+                left.push_back({rays[j].i, few[j].found.hit.id});
         // Rays to the same or to neighbouring triangles probably go the same way.
         std::ranges::sort(left, {}, [](const Left& ray) { return std::pair(ray.near, ray.i); });
         const size_t groups = (left.size() + Together::kMaxRays - 1) / Together::kMaxRays;
@@ -352,6 +433,8 @@ private:
     const Tracing tracing_;
     const BuiltScene& scene_;
     Query query_;
+    const bool are_whole_;
+    const Leaf bounds_; // of the scene, and its frame
     const LanesScene ahead_;
     std::atomic<uint64_t> invalid_{0};
     std::atomic<uint64_t> flagged_{0};

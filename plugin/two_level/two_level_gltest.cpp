@@ -345,7 +345,7 @@ Soup stack_of_triangles(int count) {
 TEST_F(TwoLevelGl, ALoopThatTheDriverEndsIsCountedAndDecidedInDouble) {
     const Soup soup = stack_of_triangles(200'000);
     const std::vector<Ray> rays = {
-        {dvec3(0, 0, -1), 0, dvec3(0, 0, 1)},        // each in doubt
+        {dvec3(0, 0, -1), 0, dvec3(0, 0, 1)},        // each in doubt: ends at the first
         {dvec3(0.9, 0.9, -1), 0, dvec3(0, 0, 1)},    // each box, no triangle
         {dvec3(0.25, 0.25, 2), 0, dvec3(0, 0, -1)}}; // the first is certain
     for (const uint64_t buffer_bytes : {0, 1 << 20})
@@ -366,7 +366,7 @@ TEST_F(TwoLevelGl, ALoopThatTheDriverEndsIsCountedAndDecidedInDouble) {
             const ovc_statistics& s = structure->statistics();
             EXPECT_LE(s.capped, s.retraced);
             if (gl->info().is_software && buffer_bytes == 0) {
-                EXPECT_EQ(s.capped, certify ? 2u : 1u) << "no loop was ended: nothing was tested";
+                EXPECT_EQ(s.capped, 1u) << "no loop was ended, or one of a ray in doubt";
             }
         }
 }

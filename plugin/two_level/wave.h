@@ -21,7 +21,7 @@ public:
     Wave(const Tracing& tracing, PassRunner& passes, const Query& query)
         : tracing_(tracing),
           passes_(passes),
-          resolver_(tracing, query),
+          resolver_(tracing, query, /* are_whole= */ false),
           states_(query.rays.size()),
           waiting_(tracing.scene.pages.size()) {}
 

@@ -31,17 +31,17 @@ Walk read_walk(ivec2 pixel) {
     uvec4 b = texelFetch(state[1], pixel, 0);
     uvec4 c = texelFetch(state[2], pixel, 0);
     Found found = Found(uintBitsToFloat(a.z), uintBitsToFloat(a.w), a.y,
-                        float[2](uintBitsToFloat(b.x), uintBitsToFloat(b.y)), uint[2](b.z, b.w),
-                        uintBitsToFloat(c.x), uintBitsToFloat(c.yz), 8u);
+                        uintBitsToFloat(b.x), uintBitsToFloat(b.y), uint[2](b.z, b.w), int(c.x),
+                        uintBitsToFloat(c.yz), 8u);
     return Walk(int(a.x), found);
 }
 
 void write_walk(Walk walk) {
     Found found = walk.found;
     place = uvec4(walk.at, found.prim, floatBitsToUint(found.best_lo), floatBitsToUint(found.best_hi));
-    further = uvec4(floatBitsToUint(found.further_lo[0]), floatBitsToUint(found.further_lo[1]),
+    further = uvec4(floatBitsToUint(found.further_lo), floatBitsToUint(found.further_hi),
                     found.further[0], found.further[1]);
-    others = uvec4(floatBitsToUint(found.others_lo), floatBitsToUint(found.weights), 0u);
+    others = uvec4(uint(found.count), floatBitsToUint(found.weights), 0u);
 }
 
 void main() {
