@@ -3,12 +3,12 @@
 // of the thesis, the CPU KD-tree and Embree.
 #pragma once
 
-#include "core/batched_stream.h"
 #include "core/exclusions.h"
 #include "core/file/archive.h"
 #include "core/ray.h"
 #include "core/result.h"
 #include "core/soup.h"
+#include "core/stream/batched_stream.h"
 #include "core/system/log.h"
 #include "host/arguments/memory_size.h"
 #include "plugin/overcast.h"

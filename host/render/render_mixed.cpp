@@ -3,7 +3,7 @@
 // spawns join the stream at once.
 #include "host/render/render_mixed.h"
 
-#include "core/reserve_sparingly.h"
+#include "core/stream/reserve_sparingly.h"
 #include "core/system/parallel.h"
 #include "core/system/stopwatch.h"
 #include "host/render/slots.h"

@@ -3,9 +3,9 @@
 // at once, so that this rank has something to trace and to shade while other ranks answer.
 #pragma once
 
-#include "core/backlog.h"
 #include "core/sieve.h"
-#include "core/stream.h"
+#include "core/stream/backlog.h"
+#include "core/stream/stream.h"
 #include "plugin/ranks/routed_call.h"
 
 #include <memory>

@@ -5,7 +5,6 @@
 #pragma once
 
 #include "core/all_hits.h"
-#include "core/batched_stream.h"
 #include "core/build_progress.h"
 #include "core/changes.h"
 #include "core/exclusions.h"
@@ -13,6 +12,7 @@
 #include "core/ray_span.h"
 #include "core/result.h"
 #include "core/soup.h"
+#include "core/stream/batched_stream.h"
 #include "core/system/log.h"
 #include "gpu/gl/gl_thread.h"
 #include "plugin/overcast.h"

@@ -2,7 +2,7 @@
 // Rays, right answers and a stream's host, which the tests of every structure share.
 #pragma once
 
-#include "core/stream.h"
+#include "core/stream/stream.h"
 #include "kdtree/test_soups.h"
 #include "plugin/structure/structure.h"
 

@@ -3,7 +3,7 @@
 // spawns joins them before pages are moved. Based on: thesis, section 3.5 (algorithm 6).
 #include "plugin/two_level/mixed_stream.h"
 
-#include "core/backlog.h"
+#include "core/stream/backlog.h"
 #include "core/system/stopwatch.h"
 #include "plugin/two_level/wave_round.h"
 

@@ -2,7 +2,7 @@
 // The mixed form over two-level: a stream of rays of both kinds.
 #pragma once
 
-#include "core/stream.h"
+#include "core/stream/stream.h"
 #include "plugin/two_level/pass_runner.h"
 
 namespace ovc {

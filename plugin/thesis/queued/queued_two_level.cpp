@@ -2,7 +2,7 @@
 // The loops of the thesis: algorithm 3 for a batch, algorithm 6 for a stream.
 #include "plugin/thesis/queued/queued_two_level.h"
 
-#include "core/backlog.h"
+#include "core/stream/backlog.h"
 #include "core/system/stopwatch.h"
 #include "plugin/thesis/queued/queued_rays.h"
 #include "plugin/two_level/query.h"

@@ -3,9 +3,9 @@
 // one batch after the other.
 #pragma once
 
-#include "core/backlog.h"
 #include "core/exclusions.h"
 #include "core/result.h"
+#include "core/stream/backlog.h"
 
 #include <algorithm>
 

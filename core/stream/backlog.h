@@ -4,8 +4,8 @@
 #pragma once
 
 #include "core/exclusions.h"
-#include "core/reserve_sparingly.h"
-#include "core/stream.h"
+#include "core/stream/reserve_sparingly.h"
+#include "core/stream/stream.h"
 
 #include <algorithm>
 #include <cassert>
