@@ -101,7 +101,7 @@ Ray FaceRays::ray(uint32_t x, uint32_t y, const dvec2& place, uint32_t sample) c
     const FaceMesh& mesh = camera_.meshes[found->mesh];
     const auto& [a, b, c] = mesh.corners[found->face];
     const dvec3& w = found->weights;
-    dvec3 normal = glm::cross(b - a, c - a);
+    dvec3 normal = glm::cross(c - a, b - a); // as povray has it: its space is left-handed
     if (!mesh.normals.empty()) {
         const std::array<vec3, 3>& of = mesh.normals[found->face];
         normal = w.x * dvec3(of[0]) + w.y * dvec3(of[1]) + w.z * dvec3(of[2]);

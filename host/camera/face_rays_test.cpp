@@ -34,12 +34,13 @@ constexpr dvec2 kMiddle{0.5};
 TEST(FaceRays, GiveEachRayOfAPixelAMesh) {
     FaceCamera camera{FaceCamera::Order::EachMesh, {row_of(6, 0), row_of(5, 7)}, 0.25};
     const FaceRays rays(camera, {3, 2});
-    EXPECT_TRUE(is_at(rays.ray(1, 1, kMiddle, 0), {4, 0, 0.25}));
-    EXPECT_TRUE(is_at(rays.ray(1, 1, kMiddle, 1), {4, 0, 7.25}));
-    EXPECT_EQ(rays.ray(2, 1, kMiddle, 0).dir, dvec3(0, 0, 1));
+    EXPECT_TRUE(is_at(rays.ray(1, 1, kMiddle, 0), {4, 0, -0.25}));
+    EXPECT_TRUE(is_at(rays.ray(1, 1, kMiddle, 1), {4, 0, 6.75}));
+    EXPECT_EQ(rays.ray(2, 1, kMiddle, 0).dir, dvec3(0, 0, -1))
+        << "the corners go round by the right hand, povray's normals by the left";
     EXPECT_EQ(rays.ray(2, 1, kMiddle, 1).dir, dvec3(0)) << "the second mesh has five faces";
     camera.backwards = true;
-    EXPECT_EQ(rays.ray(2, 1, kMiddle, 0).dir, dvec3(0, 0, -1));
+    EXPECT_EQ(rays.ray(2, 1, kMiddle, 0).dir, dvec3(0, 0, 1));
 }
 
 TEST(FaceRays, CountOnFromMeshToMesh) {

@@ -483,7 +483,7 @@ TEST(PovScene, MeshCamerasHaveFaces) {
         parse(mesh + "camera { mesh_camera { 1 3 mesh { M } smooth } location 0.01*z }");
     EXPECT_EQ(baking->faces->meshes[0].uv[1],
               (std::array<vec2, 3>{vec2(0, 0), vec2(0, 1), vec2(1, 1)}));
-    EXPECT_EQ(baking->faces->meshes[0].normals[0][2], vec3(0, 0, 1));
+    EXPECT_EQ(baking->faces->meshes[0].normals[0][2], vec3(0, 0, -1));
     EXPECT_FALSE(parse("camera { mesh_camera { 1 0 } }"));
 }
 

@@ -33,7 +33,7 @@ void add_faces(const Object& object, const dmat4& placed, bool smooth, FaceMesh&
             if (smooth)
                 mesh.normals.push_back(
                     normals_of(&facets.corners[t], turned,
-                               glm::cross(corners[1] - corners[0], corners[2] - corners[0])));
+                               glm::cross(corners[2] - corners[0], corners[1] - corners[0])));
             const bool has_uv = !facets.uv.empty();
             mesh.uv.push_back({has_uv ? facets.uv[t] : vec2(0), has_uv ? facets.uv[t + 1] : vec2(0),
                                has_uv ? facets.uv[t + 2] : vec2(0)});
