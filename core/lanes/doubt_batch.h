@@ -4,11 +4,9 @@
 #pragma once
 
 #include "core/exact/refined.h"
+#include "core/lanes/lane_batch.h"
 
 #include <algorithm>
-#include <array>
-#include <cassert>
-#include <cstddef>
 #include <limits>
 
 namespace ovc {
@@ -17,31 +15,26 @@ namespace ovc {
 template <class Tag>
 class DoubtBatch {
 public:
-    int room() const { return MeetingLanes::kCount - count_; }
-    bool empty() const { return count_ == 0; }
+    int room() const { return batch_.room(); }
+    bool empty() const { return batch_.empty(); }
 
     /// Adds a ray and a triangle. Needs room.
     void add(const Ray& ray, const Triangle& triangle, TriangleId id, const Tag& tag) {
-        assert(room() > 0);
-        lanes_.set(count_, ray, triangle);
         // No t beyond the largest double can be told.
-        entries_[size_t(count_++)] = {
-            ray.t_min, std::min(ray.t_max, std::numeric_limits<double>::max()), id, tag};
+        const double t_max = std::min(ray.t_max, std::numeric_limits<double>::max());
+        batch_.add(ray, triangle, {ray.t_min, t_max, id, tag});
     }
 
     /// Empties the batch. Calls answered(answer, triangle, id, tag) for each pair, in the order in
     /// which they were added; the answer is that of refined_candidate().
     template <class Answered>
     void finish(Answered&& answered) {
-        if (empty())
-            return;
-        solve(lanes_, count_, solutions_);
-        for (int lane = 0; lane < count_; ++lane) {
-            const Entry& entry = entries_[size_t(lane)];
-            answered(refined_candidate(solutions_.at(lane), entry.t_min, entry.t_max, entry.id),
-                     lanes_.triangle(lane), entry.id, entry.tag);
-        }
-        count_ = 0;
+        batch_.finish(
+            [&](const MeetingLanes& lanes, int count) { solve(lanes, count, solutions_); },
+            [&](const MeetingLanes& lanes, int lane, const Entry& entry) {
+                answered(refined_candidate(solutions_.at(lane), entry.t_min, entry.t_max, entry.id),
+                         lanes.triangle(lane), entry.id, entry.tag);
+            });
     }
 
 private:
@@ -51,10 +44,8 @@ private:
         Tag tag;
     };
 
-    MeetingLanes lanes_{};
+    LaneBatch<MeetingLanes, Entry> batch_;
     SolutionLanes solutions_;
-    std::array<Entry, MeetingLanes::kCount> entries_{};
-    int count_ = 0;
 };
 
 } // namespace ovc

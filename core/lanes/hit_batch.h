@@ -4,12 +4,7 @@
 #pragma once
 
 #include "core/lanes/hit_lanes.h"
-#include "core/ray.h"
-#include "core/soup.h"
-
-#include <array>
-#include <cassert>
-#include <cstddef>
+#include "core/lanes/lane_batch.h"
 
 namespace ovc {
 
@@ -17,13 +12,11 @@ namespace ovc {
 template <class Tag>
 class HitBatch {
 public:
-    bool full() const { return count_ == HitLanes::kCount; }
+    bool full() const { return batch_.full(); }
 
     /// Adds a ray and the triangle that it hits. Needs room: not full().
     void add(const Ray& ray, const Triangle& triangle, TriangleId id, const Tag& tag) {
-        assert(!full());
-        lanes_.set(count_, ray, triangle);
-        entries_[size_t(count_++)] = {ray.t_min, ray.t_max, id, tag};
+        batch_.add(ray, triangle, {ray.t_min, ray.t_max, id, tag});
     }
 
     /// Empties the batch. Calls found(hit, tag) for each hit, t, u and v rounded once; or
@@ -31,20 +24,15 @@ public:
     /// hit the triangle.
     template <class Found, class Unclear>
     void finish(Found&& found, Unclear&& unclear) {
-        if (count_ == 0)
-            return;
-        round_hits(lanes_, count_);
-        for (int lane = 0; lane < count_; ++lane) {
-            const Entry& entry = entries_[size_t(lane)];
-            const double t = lanes_.t[lane], u = lanes_.u[lane], v = lanes_.v[lane];
+        batch_.finish(round_hits, [&](const HitLanes& lanes, int lane, const Entry& entry) {
+            const double t = lanes.t[lane], u = lanes.u[lane], v = lanes.v[lane];
             const bool inside = u >= 0 && v >= 0 && u + v <= 1;
-            if (lanes_.known[lane] == HitLanes::kAll && inside && t >= entry.t_min &&
+            if (lanes.known[lane] == HitLanes::kAll && inside && t >= entry.t_min &&
                 t <= entry.t_max)
                 found(Hit{t, u, v, entry.id}, entry.tag);
             else
                 unclear(entry.tag);
-        }
-        count_ = 0;
+        });
     }
 
 private:
@@ -54,9 +42,7 @@ private:
         Tag tag;
     };
 
-    HitLanes lanes_{};
-    std::array<Entry, HitLanes::kCount> entries_{};
-    int count_ = 0;
+    LaneBatch<HitLanes, Entry> batch_;
 };
 
 } // namespace ovc

@@ -4,10 +4,7 @@
 #pragma once
 
 #include "core/exact/refined.h"
-
-#include <array>
-#include <cassert>
-#include <cstddef>
+#include "core/lanes/lane_batch.h"
 
 namespace ovc {
 
@@ -15,27 +12,20 @@ namespace ovc {
 template <class Tag>
 class RoundingBatch {
 public:
-    bool full() const { return count_ == HitLanes::kCount; }
+    bool full() const { return batch_.full(); }
 
     /// Adds a ray and the triangle that it hits. support: as in Candidate. Needs room: not full().
     void add(const Ray& ray, const Triangle& triangle, TriangleId id, uint32_t support,
              const Tag& tag) {
-        assert(!full());
-        lanes_.set(count_, ray, triangle);
-        entries_[size_t(count_++)] = {id, support, tag};
+        batch_.add(ray, triangle, {id, support, tag});
     }
 
     /// Empties the batch. Calls rounded(hit, tag) for each hit, t, u and v rounded once.
     template <class Rounded>
     void finish(Rounded&& rounded) {
-        if (count_ == 0)
-            return;
-        round_hits(lanes_, count_);
-        for (int lane = 0; lane < count_; ++lane) {
-            const Entry& entry = entries_[size_t(lane)];
-            rounded(rounded_hit(lanes_, lane, entry.id, entry.support), entry.tag);
-        }
-        count_ = 0;
+        batch_.finish(round_hits, [&](const HitLanes& lanes, int lane, const Entry& entry) {
+            rounded(rounded_hit(lanes, lane, entry.id, entry.support), entry.tag);
+        });
     }
 
 private:
@@ -45,9 +35,7 @@ private:
         Tag tag;
     };
 
-    HitLanes lanes_{};
-    std::array<Entry, HitLanes::kCount> entries_{};
-    int count_ = 0;
+    LaneBatch<HitLanes, Entry> batch_;
 };
 
 } // namespace ovc
