@@ -42,6 +42,16 @@ Shape parse_sphere_sweep(Reader& reader);
 // shape_parametric.cpp
 Shape parse_parametric(Reader& reader);
 
+/// A box, or a ball, which has a formula (Shape::exact), that bounds a surface; and a box around
+/// it.
+struct Container {
+    Shape shape;
+    Box box;
+};
+
+/// Reads one from behind contained_by (shape_implicit.cpp).
+Container parse_container(Reader& reader);
+
 // shape_patch.cpp
 Shape parse_bicubic_patch(Reader& reader);
 

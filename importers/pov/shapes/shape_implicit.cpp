@@ -197,25 +197,6 @@ void finish_polynomial(Reader& reader, Object& object, Polynomial polynomial) {
     parse_modifiers(reader, object);
 }
 
-/// The box or sphere that bounds an isosurface.
-struct Container {
-    Shape shape;
-    Box box;
-};
-
-Container parse_container(Reader& reader) {
-    reader.expect('{', "contained_by");
-    Container container;
-    const bool is_box = reader.take("box");
-    if (!is_box && !reader.take("sphere"))
-        reader.fail_here("a box or a sphere");
-    reader.expect('{', is_box ? "box" : "sphere");
-    container.shape = is_box ? parse_box(reader) : parse_sphere(reader);
-    reader.expect('}', "contained_by");
-    reader.expect('}', "contained_by");
-    return container;
-}
-
 csg::Operand operand_of(const Facets& facets) {
     csg::Operand operand;
     for (size_t t = 0; t + 2 < facets.corners.size(); t += 3)
@@ -261,6 +242,23 @@ void cut_contained(const Field& field, const Container& container, int segments,
 }
 
 } // namespace
+
+Container parse_container(Reader& reader) {
+    reader.expect('{', "contained_by");
+    Container container;
+    const bool is_box = reader.take("box");
+    if (!is_box && !reader.take("sphere"))
+        reader.fail_here("a box or a sphere");
+    reader.expect('{', is_box ? "box" : "sphere");
+    container.shape = is_box ? parse_box(reader) : parse_sphere(reader);
+    reader.expect('}', "contained_by");
+    reader.expect('}', "contained_by");
+    Facets measured;
+    container.shape.cut(8, false, measured);
+    for (const Corner& corner : measured.corners)
+        container.box.add(corner.position);
+    return container;
+}
 
 void parse_blob(Reader& reader, Object& object) {
     Components parts;
@@ -368,11 +366,8 @@ void parse_isosurface(Reader& reader, Object& object) {
                 cube.add_quad(n - u - v, n + u - v, n + u + v, n - u + v);
             }
         container->shape.cut = [cube](int, bool, Facets& out) { out = cube; };
+        container->box = {dvec3(-1), dvec3(1)};
     }
-    Facets measured;
-    container->shape.cut(8, false, measured);
-    for (const Corner& corner : measured.corners)
-        container->box.add(corner.position);
     if (!function->refused.empty())
         object.refused = function->refused;
     const Field field{[&reader, function = *function, threshold, name](const dvec3& p) {

@@ -26,25 +26,10 @@ struct Bounds {
     int limits() const { return is_ball ? 1 : 6; }
 };
 
-Bounds parse_bounds_of(Reader& reader) {
-    Bounds bounds;
-    reader.expect('{', "contained_by");
-    bounds.is_ball = reader.take("sphere");
-    if (!bounds.is_ball && !reader.take("box"))
-        reader.fail_here("a box or a sphere");
-    reader.expect('{', "contained_by");
-    const dvec3 a = parse_vector(reader);
-    reader.take_comma();
-    if (bounds.is_ball) {
-        const double radius = std::abs(parse_float(reader));
-        bounds.box = {a - radius, a + radius};
-    } else {
-        const dvec3 b = parse_vector(reader);
-        bounds.box = {glm::min(a, b), glm::max(a, b)};
-    }
-    reader.expect('}', "contained_by");
-    reader.expect('}', "contained_by");
-    return bounds;
+Bounds bounds_of(const Container& container) {
+    if (const std::optional<ExactShape>& ball = container.shape.exact)
+        return {{ball->base - ball->radius, ball->base + ball->radius}, true};
+    return {container.box, false};
 }
 
 /// Returns the part of a convex polygon that lies within one of the limits.
@@ -133,7 +118,7 @@ Shape parse_parametric(Reader& reader) {
     reader.take_comma();
     for (;;) {
         if (reader.take("contained_by"))
-            surface.bounds = parse_bounds_of(reader);
+            surface.bounds = bounds_of(parse_container(reader));
         else if (reader.take("accuracy") || reader.take("max_gradient"))
             parse_float(reader);
         else if (reader.take("precompute")) { // DEPTH, x, y, z
