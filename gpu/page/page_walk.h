@@ -207,10 +207,10 @@ private:
 /// bool for each portal that they meet so: ray r between its t_min and limit(r, enter), where t is
 /// that of the ray itself, and `enter` the t at which the first ray comes to what is next. Goes to
 /// the nearest children first, as the kernel does, but to pairs before nodes. Returns true when one
-/// of the calls stopped it. tree: the units of a page or of a
-/// top-level tree; header: the number of the header's unit in them; units_of(page): the units that
-/// the tree's links lead to, null where a page is missing. Those of a page are not used any more
-/// when the next page is asked for. walked(r): ray r in the frame of the tree.
+/// of the calls stopped it. tree: the units of a page or of a top-level tree; header: the number of
+/// the header's unit in them; units_of(page): the units that the tree's links lead to, null where a
+/// page is missing. Those of a page are not used any more when the next page is asked for.
+/// walked(r): ray r in the frame of the tree.
 template <class UnitsOf, class Walked, class Visit, class Enter, class Limit>
 bool walk_units(std::span<const uvec4> tree, uint32_t header, UnitsOf&& units_of, RaySet rays,
                 Walked&& walked, Visit&& visit, Enter&& enter_portal, Limit&& limit) {

@@ -30,9 +30,8 @@ Result<Done> join_ranks(BackendOptions& backend, SceneArguments& scene) {
     backend.kind = BackendKind::TwoLevel;
     if (!ranks->is_first())
         say_nothing_on_interrupt();
-    const bool is_scene_file =
-        scene.scenes.size() == 1 && std::filesystem::path(scene.scenes[0]).extension() == ".ovc";
-    if (backend.ranks_own == OVC_RANKS_OWN_SHARE && is_scene_file && backend.host_bytes == 0) {
+    if (backend.ranks_own == OVC_RANKS_OWN_SHARE && scene.is_one_scene_file() &&
+        backend.host_bytes == 0) {
         backend.host_bytes = share_of_file(scene.scenes[0], ranks->count());
         backend.host_bytes_may_grow = true;
     }

@@ -120,19 +120,25 @@ private:
         return Done{};
     }
 
-    /// Returns the tiles of a round that are a rank's, whether they were done before or not.
-    std::vector<uint32_t> tiles_of(uint32_t rank, uint32_t round) const {
-        return tiles_.tiles(
-            [&](uint32_t tile) { return owners_[tile] == rank && round_of_tile_[tile] == round; });
+    using Tiles = std::vector<uint32_t>;
+
+    /// Returns each rank's tiles of a round, whether they were done before or not.
+    std::vector<Tiles> tiles_of_ranks(uint32_t round) const {
+        std::vector<Tiles> tiles(ranks_.count());
+        for (const uint32_t tile :
+             tiles_.tiles([&](uint32_t tile) { return round_of_tile_[tile] == round; }))
+            tiles[owners_[tile]].push_back(tile);
+        return tiles;
     }
 
     Result<Done> run_round(uint32_t round) {
-        const bool complete = trace(tiles_.pixels(tiles_of(ranks_.rank(), round)));
+        const std::vector<Tiles> tiles = tiles_of_ranks(round);
+        const bool complete = trace(tiles_.pixels(tiles[ranks_.rank()]));
         if (ranks_.is_first() && !complete) {
             report_.complete = false;
             return Done{};
         }
-        return exchange(round, complete);
+        return exchange(tiles, round, complete);
     }
 
     /// Returns whether all of the pixels are done.
@@ -160,13 +166,10 @@ private:
     /// them. complete: whether those of this rank are. They go in parts, before each of which
     /// rank 0 has taken the one before, so that it needs room for a part, however large the film.
     /// The first part has no pixels: when it is over, all ranks have traced theirs.
-    Result<Done> exchange(uint32_t round, bool complete) {
+    Result<Done> exchange(std::span<const Tiles> tiles, uint32_t round, bool complete) {
         constexpr size_t kPartTiles = (size_t(1) << 17) / FilmTiles::kTilePixels; // of all ranks
         const size_t part = std::max<size_t>(kPartTiles / ranks_.count(), 1);
-        std::vector<std::vector<uint32_t>> tiles;
-        size_t max = 0; // of a rank
-        for (uint32_t rank = 0; rank < ranks_.count(); ++rank)
-            max = std::max(max, tiles.emplace_back(tiles_of(rank, round)).size());
+        const size_t max = std::ranges::max(tiles, {}, &Tiles::size).size(); // of a rank
         for (size_t first = 0, count = 0; first < max; first += count, count = part) {
             if (const Result<Done> taken = gather_part(tiles, first, count, complete); !taken)
                 return stop(taken.error());
@@ -186,8 +189,8 @@ private:
 
     /// Brings the pixels of `count` tiles of each rank to rank 0. complete: whether this rank's
     /// are; on rank 0, whether those of all ranks are.
-    Result<Done> gather_part(std::span<const std::vector<uint32_t>> tiles, size_t first,
-                             size_t count, bool& complete) {
+    Result<Done> gather_part(std::span<const Tiles> tiles, size_t first, size_t count,
+                             bool& complete) {
         const auto pixels_of = [&](uint32_t rank) {
             const std::span<const uint32_t> all = tiles[rank];
             const size_t from = std::min(first, all.size());
