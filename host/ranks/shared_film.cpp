@@ -163,28 +163,46 @@ private:
     }
 
     /// Brings the pixels of all ranks to rank 0, and all of them to all ranks where these want
-    /// them. complete: whether those of this rank are. They go in parts, before each of which
-    /// rank 0 has taken the one before, so that it needs room for a part, however large the film.
-    /// The first part has no pixels: when it is over, all ranks have traced theirs.
+    /// them. complete: whether those of this rank are. They go in parts, of which a rank has at
+    /// most two on the way: it packs one while rank 0 takes the one before, and rank 0 needs little
+    /// room, however large the film. The first part has no pixels: when it is over, all ranks have
+    /// traced theirs.
     Result<Done> exchange(std::span<const Tiles> tiles, uint32_t round, bool complete) {
-        constexpr size_t kPartTiles = (size_t(1) << 17) / FilmTiles::kTilePixels; // of all ranks
+        if (const Result<Done> done = begin_exchange(round, complete); !done)
+            return stop(done.error());
+        constexpr size_t kPartTiles = (size_t(1) << 16) / FilmTiles::kTilePixels; // of all ranks
         const size_t part = std::max<size_t>(kPartTiles / ranks_.count(), 1);
         const size_t max = std::ranges::max(tiles, {}, &Tiles::size).size(); // of a rank
-        for (size_t first = 0, count = 0; first < max; first += count, count = part) {
-            if (const Result<Done> taken = gather_part(tiles, first, count, complete); !taken)
-                return stop(taken.error());
+        for (size_t first = 0; first < max; first += part) {
+            if (const Result<Done> sent = gather_part(tiles, first, part, complete); !sent)
+                return stop(sent.error());
+            if (!ranks_.is_first() && first == 0)
+                continue; // rank 0 tells of each part, and the others listen a part later
             if (const Result<Done> told = tell_of_first({}, complete); !told)
                 return stop(told.error());
-            if (count == 0 && round + 1 == rounds_ && options_.traced) {
-                options_.traced();
-                malloc_trim(0);
-            }
         }
+        if (!ranks_.is_first() && max > 0)
+            if (const Result<Done> told = tell_of_first({}, complete); !told)
+                return stop(told.error());
         if (!options_.to_all || !report_.complete)
             return Done{};
         const auto all = tiles_.tiles([&](uint32_t tile) { return round_of_tile_[tile] == round; });
         const Result<Done> told = tell_of_first(tiles_.pixels(all), complete);
         return told ? told : stop(told.error());
+    }
+
+    /// Waits until all ranks have traced their pixels.
+    Result<Done> begin_exchange(uint32_t round, bool& complete) {
+        const std::vector<Tiles> none(ranks_.count());
+        if (const Result<Done> gathered = gather_part(none, 0, 0, complete); !gathered)
+            return gathered;
+        if (const Result<Done> told = tell_of_first({}, complete); !told)
+            return told;
+        if (round + 1 == rounds_ && options_.traced) {
+            options_.traced();
+            malloc_trim(0);
+        }
+        return Done{};
     }
 
     /// Brings the pixels of `count` tiles of each rank to rank 0. complete: whether this rank's
