@@ -9,8 +9,8 @@
 
 namespace ovc {
 
-/// Returns the host memory of a rank that has a share of a scene file: half of its part of the
-/// file. The other half are pages, which are read once, on their way to the device; it is corners
+/// Returns the host memory of a rank that has a share of a scene file: a fifth of its part of the
+/// file. Of the rest most are pages, which are read once, on their way to the device; it is corners
 /// that are read again and again.
 static uint64_t share_of_file(const std::string& path, uint32_t ranks) {
     constexpr uint64_t kLeast = uint64_t(8) << 20;
