@@ -12,6 +12,7 @@
 #include <cassert>
 #include <cstring>
 #include <numeric>
+#include <thread>
 
 namespace ovc {
 namespace {
@@ -168,22 +169,20 @@ private:
     /// room, however large the film. The first part has no pixels: when it is over, all ranks have
     /// traced theirs.
     Result<Done> exchange(std::span<const Tiles> tiles, uint32_t round, bool complete) {
-        if (const Result<Done> done = begin_exchange(round, complete); !done)
-            return stop(done.error());
-        constexpr size_t kPartTiles = (size_t(1) << 16) / FilmTiles::kTilePixels; // of all ranks
-        const size_t part = std::max<size_t>(kPartTiles / ranks_.count(), 1);
-        const size_t max = std::ranges::max(tiles, {}, &Tiles::size).size(); // of a rank
-        for (size_t first = 0; first < max; first += part) {
-            if (const Result<Done> sent = gather_part(tiles, first, part, complete); !sent)
-                return stop(sent.error());
-            if (!ranks_.is_first() && first == 0)
-                continue; // rank 0 tells of each part, and the others listen a part later
-            if (const Result<Done> told = tell_of_first({}, complete); !told)
-                return stop(told.error());
-        }
-        if (!ranks_.is_first() && max > 0)
-            if (const Result<Done> told = tell_of_first({}, complete); !told)
-                return stop(told.error());
+        const std::vector<Tiles> none(ranks_.count());
+        if (const Result<Done> traced = gather_part(none, 0, 0, complete); !traced)
+            return stop(traced.error());
+        if (const Result<Done> told = tell_of_first({}, complete); !told)
+            return stop(told.error());
+        // Beside the film, for what is given back may be much.
+        std::jthread after_last_ray;
+        if (round + 1 == rounds_ && options_.traced)
+            after_last_ray = std::jthread([&] {
+                options_.traced();
+                malloc_trim(0);
+            });
+        if (const Result<Done> gathered = gather(tiles, complete); !gathered)
+            return stop(gathered.error());
         if (!options_.to_all || !report_.complete)
             return Done{};
         const auto all = tiles_.tiles([&](uint32_t tile) { return round_of_tile_[tile] == round; });
@@ -191,18 +190,19 @@ private:
         return told ? told : stop(told.error());
     }
 
-    /// Waits until all ranks have traced their pixels.
-    Result<Done> begin_exchange(uint32_t round, bool& complete) {
-        const std::vector<Tiles> none(ranks_.count());
-        if (const Result<Done> gathered = gather_part(none, 0, 0, complete); !gathered)
-            return gathered;
-        if (const Result<Done> told = tell_of_first({}, complete); !told)
-            return told;
-        if (round + 1 == rounds_ && options_.traced) {
-            options_.traced();
-            malloc_trim(0);
+    Result<Done> gather(std::span<const Tiles> tiles, bool complete) {
+        constexpr size_t kPartTiles = (size_t(1) << 16) / FilmTiles::kTilePixels; // of all ranks
+        const size_t part = std::max<size_t>(kPartTiles / ranks_.count(), 1);
+        const size_t max = std::ranges::max(tiles, {}, &Tiles::size).size(); // of a rank
+        for (size_t first = 0; first < max; first += part) {
+            if (const Result<Done> sent = gather_part(tiles, first, part, complete); !sent)
+                return sent;
+            if (!ranks_.is_first() && first == 0)
+                continue; // rank 0 tells of each part, and the others listen a part later
+            if (const Result<Done> told = tell_of_first({}, complete); !told)
+                return told;
         }
-        return Done{};
+        return ranks_.is_first() || max == 0 ? Done{} : tell_of_first({}, complete);
     }
 
     /// Brings the pixels of `count` tiles of each rank to rank 0. complete: whether this rank's

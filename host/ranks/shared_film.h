@@ -22,7 +22,8 @@ struct SharedFilmOptions {
     bool to_all = false;          // the films of all ranks get all pixels, not only that of rank 0
     uint32_t rays_per_sample = 1; // about so many, at least 1
     FirstRanks first_ranks{};     // of the pixels' rays
-    /// Called once no rank has rays to trace any more, before the last pixels come together.
+    /// Called on a thread of its own once no rank has rays to trace any more, while the last pixels
+    /// come together.
     std::function<void()> traced{};
     /// Keeps the film so far; rank 0 calls it after a round where it has not for so many seconds.
     std::function<Result<Done>(const Film&)> keep{};
