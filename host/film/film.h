@@ -17,6 +17,10 @@ namespace ovc {
 
 class Film {
 public:
+    /// A tile has so many pixels, as many across as down; those of films of one row lie in a row.
+    /// It is whole pages of memory: processes that render different tiles share none.
+    static constexpr uint32_t kTilePixels = 1024;
+
     /// samples: camera rays a pixel, at least 1. Memory is taken tile by tile, as their pixels are
     /// written, so that a film of which a process renders some tiles takes little more.
     Film(uint32_t width, uint32_t height, uint32_t samples = 1);
@@ -63,13 +67,14 @@ public:
     Image image() const { return image_of(pixels()); }
 
 private:
-    static constexpr uint32_t kTileBits = 8, kTilePixels = 1 << kTileBits;
+    static constexpr uint32_t kTileBits = 10;
     struct Tile {
         std::array<Sums, kTilePixels> sums;
         /// How many more of a pixel's rays were answered than opened: samples() once it is done. It
         /// begins at 0, so that nothing has to be written before.
         std::array<uint32_t, kTilePixels> answered;
     };
+    static_assert(kTilePixels == 1u << kTileBits && sizeof(Tile) % 4096 == 0);
     struct Place {
         Tile& tile;
         uint32_t pixel; // of the tile

@@ -13,7 +13,7 @@
 namespace ovc {
 
 static constexpr uint32_t
-    kTileSide = 16,
+    kTileSide = 32,
     kTileRun = FilmTiles::kTilePixels; // of films of one row, whose pixels are points
 
 static_assert(kTileSide * kTileSide == FilmTiles::kTilePixels);

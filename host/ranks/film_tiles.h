@@ -20,7 +20,8 @@ using FirstRanks = std::function<std::vector<uint32_t>(std::span<const uint32_t>
 /// Tiles of neighbouring pixels, whose rays go the same way.
 class FilmTiles {
 public:
-    static constexpr uint32_t kTilePixels = 256; // fewer at the film's right and lower side
+    /// Fewer at the film's right and lower side.
+    static constexpr uint32_t kTilePixels = Film::kTilePixels;
 
     FilmTiles(uint32_t width, uint32_t height);
 

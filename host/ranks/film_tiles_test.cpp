@@ -27,7 +27,7 @@ TEST(FilmTiles, HaveEveryPixelOnce) {
 }
 
 TEST(FilmTiles, GoEvenlyToRanks) {
-    const FilmTiles tiles(320, 160); // 200 tiles
+    const FilmTiles tiles(640, 320); // 200 tiles
     const std::vector<uint32_t> owners = tiles.deal(3, nobody_knows);
     ASSERT_EQ(owners.size(), 200u);
     for (uint32_t rank = 0; rank < 3; ++rank)
@@ -35,13 +35,13 @@ TEST(FilmTiles, GoEvenlyToRanks) {
 }
 
 TEST(FilmTiles, GoToTheRanksOfTheirRaysAsFarAsThatIsFair) {
-    const FilmTiles tiles(320, 160);
+    const FilmTiles tiles(640, 320);
     // The left quarter sees leaves of rank 2, the next rank 1's, the right half none.
     const auto first_ranks = [](std::span<const uint32_t> pixels) {
         std::vector<uint32_t> ranks;
         for (const uint32_t pixel : pixels) {
-            const uint32_t x = pixel % 320;
-            ranks.push_back(x < 80 ? 2 : x < 160 ? 1 : kNone);
+            const uint32_t x = pixel % 640;
+            ranks.push_back(x < 160 ? 2 : x < 320 ? 1 : kNone);
         }
         return ranks;
     };

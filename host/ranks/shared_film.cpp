@@ -21,6 +21,8 @@ namespace {
 /// long pictures, which would have more than a few rounds, it has up to so many.
 constexpr uint64_t kRoundRays = uint64_t(1) << 20, kMaxRoundRays = uint64_t(1) << 24;
 constexpr uint64_t kFewRounds = 64, kMaxRounds = 4096;
+/// A rank sends so many parts of its pixels before rank 0 has taken the first.
+constexpr size_t kPartsUnderWay = 4;
 
 uint32_t rounds_for(uint64_t rays_a_rank) {
     return uint32_t(std::max(std::clamp<uint64_t>(rays_a_rank / kRoundRays, 1, kFewRounds),
@@ -164,10 +166,9 @@ private:
     }
 
     /// Brings the pixels of all ranks to rank 0, and all of them to all ranks where these want
-    /// them. complete: whether those of this rank are. They go in parts, of which a rank has at
-    /// most two on the way: it packs one while rank 0 takes the one before, and rank 0 needs little
-    /// room, however large the film. The first part has no pixels: when it is over, all ranks have
-    /// traced theirs.
+    /// them. complete: whether those of this rank are. They go in parts, of which a few are on the
+    /// way: nobody waits for messages, and rank 0 needs little room, however large the film. The
+    /// first part has no pixels: when it is over, all ranks have traced theirs.
     Result<Done> exchange(std::span<const Tiles> tiles, uint32_t round, bool complete) {
         const std::vector<Tiles> none(ranks_.count());
         if (const Result<Done> traced = gather_part(none, 0, 0, complete); !traced)
@@ -192,17 +193,22 @@ private:
 
     Result<Done> gather(std::span<const Tiles> tiles, bool complete) {
         constexpr size_t kPartTiles = (size_t(1) << 16) / FilmTiles::kTilePixels; // of all ranks
-        const size_t part = std::max<size_t>(kPartTiles / ranks_.count(), 1);
+        const size_t tiles_a_part = std::max<size_t>(kPartTiles / ranks_.count(), 1);
         const size_t max = std::ranges::max(tiles, {}, &Tiles::size).size(); // of a rank
-        for (size_t first = 0; first < max; first += part) {
-            if (const Result<Done> sent = gather_part(tiles, first, part, complete); !sent)
-                return sent;
-            if (!ranks_.is_first() && first == 0)
-                continue; // rank 0 tells of each part, and the others listen a part later
-            if (const Result<Done> told = tell_of_first({}, complete); !told)
-                return told;
+        const size_t parts = (max + tiles_a_part - 1) / tiles_a_part;
+        // Rank 0 tells of each part, and the others listen to it so many parts later.
+        const size_t later = ranks_.is_first() ? 0 : std::min(kPartsUnderWay - 1, parts);
+        for (size_t part = 0; part < parts + later; ++part) {
+            if (part < parts)
+                if (const Result<Done> sent =
+                        gather_part(tiles, part * tiles_a_part, tiles_a_part, complete);
+                    !sent)
+                    return sent;
+            if (part >= later)
+                if (const Result<Done> told = tell_of_first({}, complete); !told)
+                    return told;
         }
-        return ranks_.is_first() || max == 0 ? Done{} : tell_of_first({}, complete);
+        return Done{};
     }
 
     /// Brings the pixels of `count` tiles of each rank to rank 0. complete: whether this rank's

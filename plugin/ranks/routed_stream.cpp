@@ -14,7 +14,7 @@ namespace ovc {
 /// there when another ends. More of them take more memory.
 static constexpr size_t kBatches = 4;
 /// A batch has so many rays a thread: with as many, messages and passes cost what their rays do.
-static constexpr size_t kRaysAThread = size_t(3) << 10, kFewRays = size_t(3) << 11,
+static constexpr size_t kRaysAThread = size_t(7) << 9, kFewRays = size_t(7) << 10,
                         kMaxBatchRays = size_t(1) << 17;
 /// Fewer rays wait for others, while there is something to do.
 static constexpr size_t kMinBatchRays = size_t(1) << 12;
@@ -125,7 +125,7 @@ Result<Done> RoutedStream::begin_batches() {
             continue;
         if (has_more_ && std::max(nearest_.size(), any_.size()) < max_rays_) {
             const size_t before = nearest_.size() + any_.size();
-            if (!on_host([&] { return host_.more(*this, max_rays_); }))
+            if (!on_host([&] { return host_.more(*this, max_rays_ - nearest_.size()); }))
                 return stopped_by_host();
             has_more_ = nearest_.size() + any_.size() > before;
         }

@@ -14,7 +14,7 @@ import math
 
 # As in plugin/ranks/routed_stream.cpp and visit_server.cpp, of which the last two are a thread's.
 BATCHES = 4
-MIN_BATCH, MAX_BATCH, BATCH_A_THREAD = 3 << 11, 1 << 17, 3 << 10
+MIN_BATCH, MAX_BATCH, BATCH_A_THREAD = 7 << 10, 1 << 17, 7 << 9
 SERVER_BATCH_A_THREAD = 1 << 13
 VISIT_BYTES, ANSWER_BYTES = 72, 32
 MAX_SIMULATED = 16     # ranks; of more, so many stand for all
