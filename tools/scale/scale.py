@@ -76,20 +76,36 @@ def job_of(run, ranks):
                      imbalance=run["imbalance"])
 
 
+def costs_of_sharing(more, away):
+    """Returns what a ray and a visit elsewhere take, neither below 0, so that a ray with so many
+    visits `away` comes to `more`, by least squares over two runs."""
+    if away[0] != away[1]:
+        slope = (more[1] - more[0]) / (away[1] - away[0])
+        if slope >= 0 and more[0] >= slope * away[0]:
+            return more[0] - slope * away[0], slope
+    ray = max(statistics.mean(more), 0.0)
+    visit = max(sum(m * a for m, a in zip(more, away)) / sum(a * a for a in away), 0.0)
+
+    def off(ray, visit):
+        return sum((ray + visit * a - m) ** 2 for m, a in zip(more, away))
+
+    return min((ray, 0.0), (0.0, visit), key=lambda costs: off(*costs))
+
+
 def fitted(rates):
     """The machine whose one, two and four ranks take the CPU seconds that were measured: what ranks
     take more grows with rays and with visits elsewhere."""
     alone, two, four = (rates["runs"][ranks] for ranks in "124")
     ray = alone["cpu"] / alone["rays"]
     shading = alone["shade"] / (alone["shade"] + alone["trace"])
-    more = [(run["cpu"] - alone["cpu"]) / run["rays"] for run in (two, four)]
-    away = [run["away_per_ray"] for run in (two, four)]
     # A visit elsewhere costs a visit besides.
     visit = ray * (1 - shading)
-    elsewhere = max((more[1] - more[0]) / (away[1] - away[0]) - visit, 0.0)
+    route, elsewhere = costs_of_sharing(
+        [(run["cpu"] - alone["cpu"]) / run["rays"] - run["away_per_ray"] * visit
+         for run in (two, four)], [run["away_per_ray"] for run in (two, four)])
     return model.Machine(cores=rates["cores"], shade_seconds=ray * shading,
                          visit_seconds=visit, batch_seconds=0.0, away_seconds=elsewhere,
-                         route_seconds=max(more[0] - away[0] * (visit + elsewhere), 0.0),
+                         route_seconds=route,
                          message_seconds=5e-4)  # threads sleep between looking for messages
 
 
