@@ -37,6 +37,19 @@ const Solid kSolids[] = {
      "prism { 0, 2, 10, <0, 0>, <4, 0>, <4, 4>, <0, 4>, <0, 0>, <1, 1>, <1, 3>, <3, 3>, <3, 1>, "
      "<1, 1> }",
      24},
+    {"prism_of_squares_that_cross",
+     "prism { 0, 1, 10, <0, 0>, <2, 0>, <2, 2>, <0, 2>, <0, 0>, <1, 1>, <3, 1>, <3, 3>, <1, 3>, "
+     "<1, 1> }",
+     6},
+    {"prism_of_squares_whose_sides_overlap",
+     "prism { 0, 1, 10, <0, 0>, <2, 0>, <2, 2>, <0, 2>, <0, 0>, <1, 0>, <3, 0>, <3, 2>, <1, 2>, "
+     "<1, 0> }",
+     4},
+    // Its five points; the pentagon between them is a hole.
+    {"prism_of_a_pentagram",
+     "prism { 0, 1, 6, <0.000000, 1.000000>, <-0.587785, -0.809017>, <0.951057, 0.309017>, "
+     "<-0.951057, 0.309017>, <0.587785, -0.809017>, <0.000000, 1.000000> }",
+     0.775677},
     {"sphere_sweep", "sphere_sweep { linear_spline 2, 0, 1, 2*y, 1 }", (4 / 3.0 + 2) * pi},
     {"scaled", "sphere { 0, 1 scale <1, 2, -3> rotate <10, 20, 30> translate 5 }", 8 * pi},
     {"inverse_twice", "box { 0, 1 inverse inverse }", 1},

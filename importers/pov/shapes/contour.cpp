@@ -76,6 +76,18 @@ bool is_inside(const dvec2& p, const Contour& c) {
     return inside;
 }
 
+/// Returns a point that contours have in common with this one only where they share an edge: not
+/// one of its corners, where they may touch.
+static dvec2 middle_of_an_edge(const Contour& c) {
+    return 0.5 * (c[0] + c[1]);
+}
+
+size_t depth_of(const Contour& contour, const std::vector<Contour>& contours) {
+    return size_t(std::ranges::count_if(contours, [&](const Contour& other) {
+        return &other != &contour && !other.empty() && is_inside(middle_of_an_edge(contour), other);
+    }));
+}
+
 double doubled_area(const Contour& c) {
     double area = 0;
     for (size_t i = 0, j = c.size() - 1; i < c.size(); j = i++)
@@ -92,9 +104,8 @@ std::vector<std::array<uint32_t, 3>> cut_contours(const std::vector<Contour>& co
         rings[c].resize(contours[c].size());
         std::iota(rings[c].begin(), rings[c].end(), uint32_t(points.size()));
         points.insert(points.end(), contours[c].begin(), contours[c].end());
-        for (size_t other = 0; other < count; ++other)
-            depth[c] += other != c && !contours[c].empty() && !contours[other].empty() &&
-                        is_inside(contours[c][0], contours[other]);
+        if (contours[c].size() >= 3)
+            depth[c] = depth_of(contours[c], contours);
         const bool is_hole = depth[c] % 2 == 1;
         if (!contours[c].empty() && (doubled_area(contours[c]) < 0) != is_hole)
             std::reverse(rings[c].begin(), rings[c].end());
@@ -117,7 +128,7 @@ std::vector<std::array<uint32_t, 3>> cut_contours(const std::vector<Contour>& co
         Ring ring = rings[c];
         for (const size_t hole : order)
             if (depth[hole] == depth[c] + 1 && rings[hole].size() >= 3 &&
-                is_inside(contours[hole][0], contours[c]))
+                is_inside(middle_of_an_edge(contours[hole]), contours[c]))
                 join(ring, rings[hole], points);
         std::vector<dvec3> outline;
         for (const uint32_t i : ring)

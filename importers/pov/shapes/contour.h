@@ -15,12 +15,15 @@ namespace ovc::pov {
 using Contour = std::vector<dvec2>;
 
 /// Returns counterclockwise triangles, which index the points of all contours in order. Contours
-/// may lie in each other; where they cross, the triangles do not cover the shape exactly.
+/// may lie in each other and touch at points, but not cross (simple_contours()).
 std::vector<std::array<uint32_t, 3>> cut_contours(const std::vector<Contour>& contours);
 
 /// Returns whether the point is inside, by counting the edges to the right of it. A point on the
 /// contour may count as inside or outside.
 bool is_inside(const dvec2& p, const Contour& contour);
+
+/// Returns how many of the contours lie around this one of them, which they do not cross.
+size_t depth_of(const Contour& contour, const std::vector<Contour>& contours);
 
 /// Returns twice the area, which is above 0 where the contour runs counterclockwise.
 double doubled_area(const Contour& contour);

@@ -2,11 +2,14 @@
 // Reads shapes that are flat or have flat sides only, which need no segments.
 #include "importers/pov/shapes/contour.h"
 #include "importers/pov/shapes/shape.h"
+#include "importers/pov/shapes/simple_contours.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cassert>
+#include <map>
+#include <utility>
 
 namespace ovc::pov {
 
@@ -109,14 +112,30 @@ Shape parse_polygon(Reader& reader) {
     const int axis = major_axis(normal);
     const int x = (axis + 1) % 3, y = (axis + 2) % 3;
     std::vector<Contour> contours;
-    std::vector<dvec3> all;
+    std::map<std::pair<double, double>, dvec3> corners;
     for (const auto& part : parts) {
         contours.emplace_back();
         for (const dvec3& p : part) {
             contours.back().push_back({p[x], p[y]});
-            all.push_back(p);
+            corners[{p[x], p[y]}] = p;
         }
     }
+    contours = simple_contours(std::move(contours));
+    std::vector<dvec3> all;
+    for (const Contour& contour : contours)
+        for (const dvec2& p : contour) {
+            const auto corner = corners.find({p.x, p.y});
+            if (corner != corners.end()) {
+                all.push_back(corner->second);
+                continue;
+            }
+            dvec3 crossing = parts[0][0]; // where edges cross, in the polygon's plane
+            crossing[axis] -=
+                (normal[x] * (p.x - crossing[x]) + normal[y] * (p.y - crossing[y])) / normal[axis];
+            crossing[x] = p.x;
+            crossing[y] = p.y;
+            all.push_back(crossing);
+        }
     for (const auto& t : cut_contours(contours))
         facets.add(all[t[0]], all[t[1]], all[t[2]]);
     return fixed(std::move(facets));

@@ -2,6 +2,7 @@
 // Reads shapes of a curve that is swept along y (prism) or around it (lathe, sor).
 #include "importers/pov/shapes/contour.h"
 #include "importers/pov/shapes/shape.h"
+#include "importers/pov/shapes/simple_contours.h"
 #include "importers/pov/shapes/sweep.h"
 
 #include <algorithm>
@@ -115,7 +116,8 @@ Shape parse_prism(Reader& reader) {
             const double scale = conic ? y : 1;
             return dvec3(p.x * scale, y, p.y * scale);
         };
-        sweep(prism_contours(curve, points, segments), /* lids= */ !open, place, out);
+        sweep(simple_contours(prism_contours(curve, points, segments)), /* lids= */ !open, place,
+              out);
     };
     return shape;
 }

@@ -5,7 +5,6 @@
 #include "importers/pov/shapes/contour.h"
 #include "importers/pov/shapes/facets.h"
 
-#include <algorithm>
 #include <cassert>
 
 namespace ovc::pov {
@@ -13,7 +12,8 @@ namespace ovc::pov {
 /// Adds the sides between contours and their copies, and with `lids` both ends, to `out`. With lids
 /// the surface is closed, and it faces outside. place(point, false) and place(point, true) give a
 /// point's position at the beginning and at the end of the sweep, which goes against the cross
-/// product of the plane's first axis with its second. contours: each of at least 3 points.
+/// product of the plane's first axis with its second. contours: each of at least 3 points; they do
+/// not cross.
 template <class Placing>
 void sweep(const std::vector<Contour>& contours, bool lids, Placing place, Facets& out) {
     std::vector<dvec2> all;
@@ -21,10 +21,7 @@ void sweep(const std::vector<Contour>& contours, bool lids, Placing place, Facet
         assert(c.size() >= 3);
         all.insert(all.end(), c.begin(), c.end());
         // Outside is to the right of a counterclockwise curve, but to the left where it is a hole.
-        const auto depth = std::count_if(contours.begin(), contours.end(), [&](const Contour& o) {
-            return &o != &c && is_inside(c[0], o);
-        });
-        const bool forwards = (doubled_area(c) > 0) == (depth % 2 == 0);
+        const bool forwards = (doubled_area(c) > 0) == (depth_of(c, contours) % 2 == 0);
         for (size_t i = 0; i < c.size(); ++i) {
             const dvec2& p = c[forwards ? i : (i + 1) % c.size()];
             const dvec2& q = c[forwards ? (i + 1) % c.size() : i];
