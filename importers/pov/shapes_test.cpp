@@ -120,6 +120,18 @@ TEST_P(PovSolid, NormalsPointOutside) {
 INSTANTIATE_TEST_SUITE_P(All, PovSolid, testing::ValuesIn(kSolids),
                          [](const auto& solid) { return std::string(solid.param.name); });
 
+TEST(PovShapes, HeightsOfAPigmentAreItsGray) {
+    // As povray's trace() tells.
+    const std::pair<const char*, double> kColors[] = {
+        {"<1, 0, 0>", 0.297}, {"<0, 0.5, 0>", 0.2945}, {"<0, 0, 1>", 0.114}, {"0.5", 0.5}};
+    for (const auto& [color, height] : kColors)
+        for (const Triangle& t : triangles_of(parse_pov(
+                 std::string("height_field { function 3, 3 { pigment { rgb ") + color + " } } }",
+                 "x.pov", {})))
+            for (size_t i = 0; i < 3; ++i)
+                EXPECT_NEAR(t[i].y, height, 1e-4) << color;
+}
+
 double area(const std::string& text) {
     double sum = 0;
     for (const Triangle& t : triangles_of(parse_pov(text, "x.pov", {})))

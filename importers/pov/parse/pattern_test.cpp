@@ -165,6 +165,16 @@ TEST(PovTexture, MixesTextures) {
     EXPECT_EQ(checkered.texture->at({6, 12, -6}), dvec3(1, 2, -1)) << "both scales";
 }
 
+TEST(PovTexture, TilesBeginWithTheSecond) {
+    const Scene scene = textured_box("texture { tiles { texture { pigment { rgb x } } "
+                                     "tile2 texture { pigment { rgb y } } } }");
+    const Texture& mix = scene.textures.at(box_material(scene).mix->texture);
+    EXPECT_EQ(mix.pattern.kind, Pattern::Kind::Checker);
+    ASSERT_EQ(mix.stops.size(), 2u);
+    EXPECT_EQ(scene.materials.at(mix.stops[0].texture).color, vec3(0, 1, 0)) << "as povray draws";
+    EXPECT_EQ(scene.materials.at(mix.stops[1].texture).color, vec3(1, 0, 0));
+}
+
 TEST(PovNormal, TiltsNormals) {
     const Scene scene = textured_box("pigment { rgb 1 } normal { granite 0.3 accuracy 0.1 scale 2 "
                                      "turbulence 0.2 } scale 3");

@@ -257,7 +257,8 @@ static Texture mix_of(PatternPtr map) {
     return all;
 }
 
-/// Reads `tiles { texture { … } tile2 texture { … } }`, a checker of two textures in old scenes.
+/// Reads `tiles { texture { … } tile2 texture { … } }`, a checker of two textures in old scenes. The
+/// second has the cubes that the first of a `checker` has.
 static Texture parse_tiles(Reader& reader) {
     reader.expect('{', "tiles");
     auto map = std::make_shared<PatternMap>();
@@ -276,6 +277,8 @@ static Texture parse_tiles(Reader& reader) {
         else if (!reader.take("tile2") && !reader.take(','))
             reader.fail_here("'}' or a texture of tiles");
     }
+    if (map->stops.size() == 2)
+        std::swap(map->stops[0].texture, map->stops[1].texture);
     return map->stops.empty() ? reader.defaults : mix_of(std::move(map));
 }
 

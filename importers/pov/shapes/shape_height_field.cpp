@@ -40,7 +40,8 @@ private:
     }
 };
 
-/// Reads WIDTH, HEIGHT { FORMULA }, with x and y from 0 to 1, from behind the word `function`.
+/// Reads WIDTH, HEIGHT { FORMULA }, with x and y from 0 to 1, from behind the word `function`. Of a
+/// pigment, the gray of its colors counts.
 Grid grid_of_function(Reader& reader, const Token& word) {
     const Function function = parse_function(reader);
     const double width = function.grid.x, height = function.grid.y;
@@ -58,7 +59,8 @@ Grid grid_of_function(Reader& reader, const Token& word) {
         for (size_t i = 0; i < grid.width; ++i) {
             const double at[3] = {double(i) / double(grid.width - 1),
                                   double(row) / double(grid.height - 1), 0};
-            const double y = call(reader, word, function, at).v[0];
+            const Number value = call(reader, word, function, at);
+            const double y = function.color ? value.gray() : value.v[0];
             grid.heights.push_back(float(y > 0 ? std::min(y, 1.0) : 0.0)); // NaN counts as 0
         }
     return grid;

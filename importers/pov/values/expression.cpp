@@ -64,7 +64,7 @@ Number parse_member(Reader& reader, const Number& whole) {
     const Token name = reader.next();
     const double* v = whole.v.data();
     if (name.is("gray") || name.is("grey"))
-        return Number::of(0.297 * v[0] + 0.589 * v[1] + 0.114 * v[2]);
+        return Number::of(whole.gray());
     const int i = name.kind == TokenKind::Name ? component(name.name->text) : -1;
     if (i < 0)
         reader.fail(name.place,

@@ -32,6 +32,9 @@ struct Number {
 
     static Number of(double x) { return {{x}, 1, false}; }
     static Number of(const dvec3& p) { return {{p.x, p.y, p.z}, 3, false}; }
+
+    /// Returns how bright a color is, as POV-Ray weighs red, green and blue.
+    double gray() const { return 0.297 * v[0] + 0.589 * v[1] + 0.114 * v[2]; }
 };
 
 /// A part of a look that Overcast approximates or leaves out, which warns where the look is drawn.
