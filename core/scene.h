@@ -44,6 +44,12 @@ struct Finish {
     bool fresnel = false;
     float metallic_reflection = 0; // mirror images take the color on, as highlights do
     bool conserve_energy = false;  // reflected light is not let through, too
+    /// The share of a thin film's colors in the light of a lamp. The film's thickness has the unit
+    /// of the wavelengths of red, green and blue light, and varies in space by this turbulence.
+    float irid = 0;
+    float irid_thickness = 0;
+    float irid_turbulence = 0;
+    vec3 irid_wavelengths{0.7f, 0.52f, 0.48f};
     float crand = 0; // up to this share of diffuse light is missing, at random from place to place
     /// A filter hides the surface's own light in proportion to its brightest component, as before
     /// POV-Ray 3.7, and not by its amount.
@@ -53,8 +59,9 @@ struct Finish {
 };
 
 /// Light that went a distance through the inside of a solid keeps a share of 1 / (1 + (way /
-/// distance) ^ power), or of exp(-way / distance) for a power of 1,000 or more. The rest of a
-/// component of light keeps the share of `color`. With a power of 0 shadows keep all light.
+/// distance) ^ power), and the rest of a component of light keeps the share of `color`. For a power
+/// of 1,000 or more it keeps exp(-(1 - color) x way / distance). With a power of 0 shadows keep all
+/// light.
 struct Absorption {
     float distance = 0; // above 0
     float power = 0;    // at least 0
@@ -131,6 +138,7 @@ struct Material {
     std::optional<PlacedTexture> mix;
     std::optional<Absorption> absorption; // of light that comes to the surface from inside
     std::vector<Medium> media;            // that fill the inside
+    bool hollow = false; // what fills the air around, as fog does, fills the inside too
     /// POV-Ray's substitute for focused light: shadow rays that pass the surface are multiplied by
     /// 1 + cosine ^ (45 x caustics), with the angle to the normal; 0: they are not.
     float caustics = 0;
@@ -203,8 +211,9 @@ struct Light {
     /// All light goes along `direction`, from the plane through `position` that is perpendicular to
     /// it. Surfaces behind that plane are lit too, as in POV-Ray.
     bool parallel = false;
-    bool shadowless = false;  // shines through everything, and makes no highlights
-    bool lights_media = true; // media scatter it
+    bool shadowless = false;   // shines through everything, and makes no highlights
+    bool lights_media = true;  // media scatter it
+    bool fades_in_air = false; // fog and media of the air take their share of it
     /// Unless 0, the light is multiplied by 2 / (1 + (distance / fade_distance) ^ fade_power).
     /// Light that falls with the square of the distance has a tiny fade_distance D, power 2, color
     /// / (2 D^2).
@@ -268,6 +277,7 @@ struct Camera {
     /// right and from bottom to top. Its textures are those of the scene.
     std::optional<Bump> bump;
     std::optional<Lens> lens; // none: everything is sharp, as it is in a bent picture
+    double nearest = 0;       // distance from which on rays see something
     bool by_faces = false;    // rays come from Scene::faces, and the rest says about where they go
 };
 
@@ -290,6 +300,21 @@ struct Fog {
     bool operator==(const Fog&) const = default;
 };
 
+/// A bow of colors in the air, as thick as fog, around the way that sunlight goes.
+struct Rainbow {
+    dvec3 direction{0, 0, 1}; // of sunlight; unit length
+    dvec3 up{0, 1, 0};        // from the middle of the bow to that of its arc; any length above 0
+    double angle = 0;         // degrees from `direction` to the middle of the colors
+    double width = 0;         // degrees from the first color to the last; above 0
+    double distance = 1e7;    // as Fog::distance; above 0
+    double arc = 360;         // degrees of the circle that are seen; above 0
+    double full_arc = 360;    // degrees of it that are not fading out
+    double jitter = 0;        // by which colors are at random places, as a share of the width
+    std::vector<TextureStop> colors; // from the inner rim, 0, to the outer one, 1; at least one
+
+    bool operator==(const Rainbow&) const = default;
+};
+
 /// The light that a ray sees where it hits nothing: a gradient from horizon to zenith along the
 /// camera's up, linear RGB. In front of it are the layers, the farthest first, each a texture on a
 /// sphere of radius 1 around the eye.
@@ -299,6 +324,7 @@ struct Background {
     std::vector<PlacedTexture> layers;
     bool tints = true; // what a layer's filter lets through takes on its color
     std::vector<Fog> fogs;
+    std::vector<Rainbow> rainbows;
     std::vector<Medium> media; // that fill the air, outside of solids
 
     bool operator==(const Background&) const = default;

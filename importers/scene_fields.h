@@ -38,10 +38,20 @@ void each_field(auto& io, Some<DensityGrid> auto& g) {
     io(g.size, g.values);
 }
 
+void each_field(auto& io, Some<PlacedRound> auto& r) {
+    io(r.shape.base, r.shape.radius, r.shape.cap, r.shape.cap_radius, r.shape.is_ball, r.shape.open,
+       r.to_shape);
+}
+
+void each_field(auto& io, Some<Region> auto& r) {
+    io(r.triangles.corners, r.triangles.boxes, r.inverted, r.rounds, r.half_spaces);
+}
+
 void each_field(auto& io, Some<Finish> auto& f) {
     io(f.ambient, f.diffuse, f.brilliance, f.phong, f.phong_size, f.specular, f.roughness,
        f.metallic, f.reflection, f.grazing_reflection, f.reflection_falloff, f.fresnel,
-       f.metallic_reflection, f.conserve_energy, f.crand, f.filter_by_brightest);
+       f.metallic_reflection, f.conserve_energy, f.irid, f.irid_thickness, f.irid_turbulence,
+       f.irid_wavelengths, f.crand, f.filter_by_brightest);
 }
 
 void each_field(auto& io, Some<TransparentColor> auto& c) {
@@ -58,7 +68,7 @@ void each_field(auto& io, Some<Octaves> auto& o) {
 
 void each_field(auto& io, Some<Pattern> auto& p) {
     io(p.kind, p.parameters, p.wave, p.frequency, p.phase, p.exponent, p.noise, p.turbulence,
-       p.octaves, p.steps, p.formula, p.grid);
+       p.octaves, p.steps, p.formula, p.grid, p.region);
 }
 
 void each_field(auto& io, Some<TextureStop> auto& s) {
@@ -106,7 +116,8 @@ void each_field(auto& io, Some<Medium> auto& m) {
 
 void each_field(auto& io, Some<Material> auto& m) {
     io(m.name, m.color, m.mirror, m.transmission, m.filter, m.ior, m.finish, m.optics, m.texture,
-       m.bump, m.normal_map, m.maps, m.under, m.absorption, m.media, m.caustics, m.inside, m.mix);
+       m.bump, m.normal_map, m.maps, m.under, m.absorption, m.media, m.hollow, m.caustics, m.inside,
+       m.mix);
 }
 
 void each_field(auto& io, Some<Cutout> auto& c) {
@@ -120,7 +131,7 @@ void each_field(auto& io, Some<SpotCone> auto& c) {
 
 void each_field(auto& io, Some<Light> auto& l) {
     io(l.position, l.color, l.shadow_offset, l.on_camera, l.direction, l.cone, l.parallel,
-       l.shadowless, l.lights_media, l.fade_distance, l.fade_power, l.stand_in);
+       l.shadowless, l.lights_media, l.fades_in_air, l.fade_distance, l.fade_power, l.stand_in);
 }
 
 void each_field(auto& io, Some<ImageWindow> auto& w) {
@@ -128,7 +139,7 @@ void each_field(auto& io, Some<ImageWindow> auto& w) {
 }
 
 void each_field(auto& io, Some<Camera> auto& c) {
-    io(c.eye, c.target, c.up, c.fov_degrees, c.window, c.bump, c.lens, c.by_faces);
+    io(c.eye, c.target, c.up, c.fov_degrees, c.window, c.bump, c.lens, c.nearest, c.by_faces);
 }
 
 void each_field(auto& io, Some<FaceMesh> auto& m) {
@@ -147,8 +158,12 @@ void each_field(auto& io, Some<Fog> auto& f) {
     io(f.color, f.distance, f.altitude, f.offset, f.up);
 }
 
+void each_field(auto& io, Some<Rainbow> auto& r) {
+    io(r.direction, r.up, r.angle, r.width, r.distance, r.arc, r.full_arc, r.jitter, r.colors);
+}
+
 void each_field(auto& io, Some<Background> auto& b) {
-    io(b.horizon, b.zenith, b.layers, b.tints, b.fogs, b.media);
+    io(b.horizon, b.zenith, b.layers, b.tints, b.fogs, b.rainbows, b.media);
 }
 
 void each_field(auto& io, Some<Omission> auto& o) {

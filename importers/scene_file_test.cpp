@@ -164,33 +164,35 @@ TEST(SceneFile, EveryFieldOfAStructIsNamed) {
     EXPECT_EQ(size(Finish{}), sizeof(Finish) - 3 * 3);
     // Vectors take 8 bytes for their size.
     EXPECT_EQ(size(Pattern{}), sizeof(Pattern) - sizeof(std::vector<TextureStep>) + 8 -
-                                   sizeof(Formula) + 2 * 8 - sizeof(DensityGrid) + 12 + 8);
+                                   sizeof(Formula) + 2 * 8 - sizeof(DensityGrid) + 12 + 8 -
+                                   sizeof(Region) + 4 * 8 + 4);
     EXPECT_EQ(size(TextureStop{}), sizeof(TextureStop));
     EXPECT_EQ(size(PlacedTexture{}), sizeof(PlacedTexture) - 4);
-    EXPECT_EQ(size(Background{}), 24 + 8 + 1 + 8 + 8u);
+    EXPECT_EQ(size(Background{}), 24 + 8 + 1 + 8 + 8 + 8u);
     EXPECT_EQ(size(Material{}),
-              8 + 12 + 4 + 4 + 12 + 8 + 1 + 1 + 1 + 1 + 1 + 1 + 4 + 1 + 8 + 4 + 4 + 1u);
+              8 + 12 + 4 + 4 + 12 + 8 + 1 + 1 + 1 + 1 + 1 + 1 + 4 + 1 + 8 + 1 + 4 + 4 + 1u);
     EXPECT_EQ(size(ImageTexture{}), sizeof(ImageTexture) - 4 - 3 - sizeof(ImageTexture::lookup));
     EXPECT_EQ(size(NormalMap{}), sizeof(NormalMap) - 4);
     EXPECT_EQ(size(MaterialMaps{}), sizeof(MaterialMaps));
     EXPECT_EQ(size(PictureFile{}), 8 + 8 + 8u);
     EXPECT_EQ(size(Bump{}), sizeof(Bump) - 4 - 2 * sizeof(std::vector<uint32_t>) + 2 * 8);
+    EXPECT_EQ(size(Rainbow{}), sizeof(Rainbow) - sizeof(std::vector<TextureStop>) + 8);
     EXPECT_EQ(size(SpotCone{}), sizeof(SpotCone));
     EXPECT_EQ(size(Optics{}), 3 * 12 + 1 + 8 + 4 + 12 + 1u);
-    EXPECT_EQ(size(Light{}), 24 + 12 + 24 + 1 + 24 + 1 + 1 + 1 + 1 + 8 + 8 + 1u);
+    EXPECT_EQ(size(Light{}), 24 + 12 + 24 + 1 + 24 + 1 + 1 + 1 + 1 + 1 + 8 + 8 + 1u);
     EXPECT_EQ(size(ImageWindow{}), 3 * 24 + 1 + 4 + 8 + 8u);
-    EXPECT_EQ(size(Camera{}), 3 * 24 + 8 + 1 + 1 + 1 + 1u);
+    EXPECT_EQ(size(Camera{}), 3 * 24 + 8 + 1 + 1 + 1 + 8 + 1u);
     EXPECT_EQ(size(FaceMesh{}), 8 + 8 + 8u);
     EXPECT_EQ(size(FaceCamera{}), 8 + 8 + 8 + 1u);
     EXPECT_EQ(size(Medium{}), 3 * 12 + 4 + 8 + 4 + 8 + 4u);
     EXPECT_EQ(size(Cutout{}), 4 + 4 + 8 + 4 + 16 + 16 + 1 + 1 + 1 + 4 + 4u);
     EXPECT_EQ(size(MeshInfo{}), 8 + 4 + 1 + 4 + 72 + 3 * 4 + 8 + 8u); // stored_… are of one process
-    EXPECT_EQ(sizeof(Finish), 88u) << "a field more: name it in scene_fields.h, and here";
+    EXPECT_EQ(sizeof(Finish), 112u) << "a field more: name it in scene_fields.h, and here";
     EXPECT_EQ(sizeof(Optics), 72u) << "a field more: name it in scene_fields.h, and here";
-    EXPECT_EQ(sizeof(Material), 768u) << "a field more: name it in scene_fields.h, and here";
+    EXPECT_EQ(sizeof(Material), 800u) << "a field more: name it in scene_fields.h, and here";
     EXPECT_EQ(sizeof(Light), 152u) << "a field more: name it in scene_fields.h, and here";
     EXPECT_EQ(sizeof(ImageWindow), 96u) << "a field more: name it in scene_fields.h, and here";
-    EXPECT_EQ(sizeof(Camera), 440u) << "a field more: name it in scene_fields.h, and here";
+    EXPECT_EQ(sizeof(Camera), 448u) << "a field more: name it in scene_fields.h, and here";
     EXPECT_EQ(sizeof(Cutout), 88u) << "a field more: name it in scene_fields.h, and here";
     EXPECT_EQ(sizeof(MeshInfo), 216u) << "a field more: name it in scene_fields.h, and here";
 }

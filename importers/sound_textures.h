@@ -18,8 +18,9 @@ inline bool is_sound(const Pattern& pattern) {
     const auto finite = [](double x) { return std::isfinite(x); };
     const bool steps =
         std::all_of(pattern.steps.begin(), pattern.steps.end(), [](const TextureStep& step) {
-            return step.kind <= TextureStep::Kind::Planar &&
+            return step.kind <= TextureStep::Kind::BoxNet &&
                    (step.kind < TextureStep::Kind::Cylindrical ||
+                    step.kind == TextureStep::Kind::BoxNet ||
                     (step.rows[0].x >= 0 && step.rows[0].x <= 2)) &&
                    (step.kind != TextureStep::Kind::Turbulence ||
                     (step.rows[1].y >= 0 && step.rows[1].y <= double(kMaxOctaves)));
@@ -32,9 +33,9 @@ inline bool is_sound(const Pattern& pattern) {
                          std::all_of(pattern.parameters.begin(), pattern.parameters.end(),
                                      [](double x) { return std::abs(x) <= kMaxFractalIterations; });
     return steps && small && cells == grid.values.size() && fractal &&
-           pattern.kind <= Pattern::Kind::Triangular && pattern.wave <= Pattern::Wave::Power &&
-           pattern.noise >= NoiseKind::Original && pattern.noise <= NoiseKind::Corrected &&
-           pattern.octaves.count <= kMaxOctaves &&
+           pattern.region.triangles.is_sound() && pattern.kind <= Pattern::Kind::Triangular &&
+           pattern.wave <= Pattern::Wave::None && pattern.noise >= NoiseKind::Original &&
+           pattern.noise <= NoiseKind::Perlin && pattern.octaves.count <= kMaxOctaves &&
            std::all_of(pattern.parameters.begin(), pattern.parameters.end(), finite) &&
            finite(pattern.frequency) && finite(pattern.phase) && finite(pattern.exponent);
 }
@@ -145,7 +146,7 @@ template <class IsColor>
 bool has_sound_textures(const Scene& scene, const Material& material, const IsColor& is_color) {
     if (material.texture && !is_color(material.texture->texture))
         return false;
-    if (material.normal_map && (material.normal_map->kind > NormalMap::Kind::Tangent ||
+    if (material.normal_map && (material.normal_map->kind > NormalMap::Kind::Space ||
                                 !is_color(material.normal_map->texture)))
         return false;
     if (material.maps)
@@ -193,6 +194,10 @@ inline bool has_sound_textures(const Scene& scene) {
         if (!(layers[m] <= kMaxTextureSteps))
             return false;
     }
+    const auto is_plain = [](const TextureStop& stop) { return stop.texture == kNoTexture; };
+    for (const Rainbow& rainbow : scene.background.rainbows)
+        if (rainbow.colors.empty() || !std::ranges::all_of(rainbow.colors, is_plain))
+            return false;
     return std::ranges::all_of(scene.cutouts,
                                [&](const Cutout& cutout) {
                                    return cutout.texture == kNoTexture || is_color(cutout.texture);

@@ -3,9 +3,10 @@
 // which tells their normals; bump_test.cpp compares with such normals.
 #include "core/texture/bump.h"
 
+#include "core/texture/noise/random_cells.h"
 #include "core/texture/pattern.h"
-#include "core/texture/random_cells.h"
 
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -104,6 +105,19 @@ dvec3 quilted_slope(const Pattern& pattern, const dvec3& at) {
     return quilted_curve(pattern, glm::length(off)) / std::sqrt(0.75) * off;
 }
 
+/// Returns the normal of the facet that a normal of length 1 belongs to, at a place of the pattern.
+dvec3 faceted(const Pattern& pattern, const dvec3& at, const dvec3& normal) {
+    using P = FacetParameter;
+    const std::array<double, 10>& p = pattern.parameters;
+    const CrackleMetric metric{p[P::kMetric], 0};
+    if (p[P::kCoords] > 0) {
+        constexpr double kCells = 10; // in a unit of the pattern
+        const dvec3 noise = vector_noise(nearest_points(kCells * at, metric).nearest);
+        return normal + p[P::kCoords] * (noise - glm::dot(noise, normal) * normal);
+    }
+    return p[P::kSize] > 0 ? nearest_points(normal / p[P::kSize], metric).nearest : normal;
+}
+
 dvec3 tilt(const Around& around, const Bump& bump) {
     if (bump.kind == Bump::Kind::Height)
         return against_slope(around, bump);
@@ -163,7 +177,13 @@ dvec3 tilted_normal(const Around& around, const Bump& bump) {
     const double length = glm::length(there);
     if (!(length > 0) || !std::isfinite(length))
         return around.normal;
-    const dvec3 back = rows * (there / length + bump.amount * tilt(around, bump));
+    const Pattern& pattern = pattern_of(around, bump);
+    const dvec3 tilted =
+        bump.kind == Bump::Kind::Facets
+            ? faceted(pattern, evaluate(around.textures, pattern, point_of(around, bump)).at.at,
+                      there / length)
+            : there / length + bump.amount * tilt(around, bump);
+    const dvec3 back = rows * tilted;
     const double size = glm::length(back);
     return size > 0 && std::isfinite(size) ? back / size : around.normal;
 }

@@ -17,12 +17,22 @@ struct SlopeStop {
     bool operator==(const SlopeStop&) const = default;
 };
 
+/// The places of what Bump::Kind::Facets needs among its pattern's parameters.
+struct FacetParameter {
+    enum Place : size_t {
+        kCoords,    // above 0: noise is added in cells of size 0.1, so many times
+        kSize,      // without that: the size of cells of normals, above 0
+        kMetric = 3 // as for crackle
+    };
+};
+
 struct Bump {
     /// Height tilts against the slope of the pattern's value. The next three add noise to the
     /// normal: three noises, those times the cube of the noise, or the sum of their magnitudes in
     /// octaves. Ripples and Waves tilt it along the waves that run over the surface. Quilted tilts
-    /// it away from the middle of a cell, and Facets snaps it to that of a cell's point. Picture
-    /// tilts it against the slope of the brightness of three texels of a planar image. Mix adds up
+    /// it away from the middle of a cell. Facets has one normal in each cell of space, or of all
+    /// normals, whatever its amount: see FacetParameter. Picture tilts it against the slope of the
+    /// brightness of three texels of a planar image. Mix adds up
     /// the normals of `parts`, one for each stop of the texture, in proportion.
     enum class Kind : uint64_t {
         Height,

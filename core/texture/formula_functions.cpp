@@ -3,7 +3,8 @@
 // The formulas of the latter follow from the parameters that functions.inc describes;
 // importers/pov/pov_test.cpp checks them against values that povray 3.7.0 prints.
 #include "core/texture/formula.h"
-#include "core/texture/noise.h"
+#include "core/texture/noise/noise.h"
+#include "core/texture/surface_functions.h"
 
 #include <algorithm>
 #include <array>
@@ -83,7 +84,9 @@ double superellipsoid(Arguments a) {
 }
 
 NoiseKind noise_kind(double number) {
-    return number < 1.5 ? NoiseKind::Original : NoiseKind::Corrected;
+    return number < 1.5   ? NoiseKind::Original
+           : number < 2.5 ? NoiseKind::Corrected
+                          : NoiseKind::Perlin;
 }
 
 /// The arguments of Musgrave's fractals: a point, H, lacunarity, octaves, offset, one more, and the
@@ -170,7 +173,7 @@ InternalFunction internal_function(uint32_t number) {
     case 78: // f_noise_generator
         return {4, [](Arguments a) { return noise({a[0], a[1], a[2]}, noise_kind(a[3])); }};
     default:
-        return {};
+        return surface_function(number);
     }
 }
 

@@ -38,7 +38,7 @@ double slope(std::span<const Texture> textures, uint32_t texture, const TextureP
     behind.uv[axis] += 0.5 * step;
     before.at -= 0.5 * step * point.by_uv[size_t(axis)];
     behind.at += 0.5 * step * point.by_uv[size_t(axis)];
-    return (value_at(textures, texture, behind) - value_at(textures, texture, before)) / step;
+    return (height_at(textures, texture, behind) - height_at(textures, texture, before)) / step;
 }
 
 dvec3 raised(std::span<const Texture> textures, const NormalMap& map, const TexturePoint& point,
@@ -63,6 +63,29 @@ dvec3 raised(std::span<const Texture> textures, const NormalMap& map, const Text
     return sum;
 }
 
+/// The width of a place in space without a footprint.
+constexpr double kPlace = 1e-4;
+
+dvec3 raised_in_space(std::span<const Texture> textures, const NormalMap& map,
+                      const TexturePoint& point, const dvec3& normal) {
+    const double reach = std::max(glm::length(point.sides[0]), glm::length(point.sides[1]));
+    const double step = reach > 0 ? 0.5 * reach : kPlace;
+    const int other = major_axis(dvec3(1) - glm::abs(normal));
+    dvec3 across(0);
+    across[other] = 1;
+    const dvec3 tangent = glm::normalize(glm::cross(normal, across));
+    dvec3 sum = normal;
+    for (const dvec3& way : {tangent, glm::cross(normal, tangent)}) {
+        TexturePoint before = point, behind = point;
+        before.at -= 0.5 * step * way;
+        behind.at += 0.5 * step * way;
+        const double rise =
+            height_at(textures, map.texture, behind) - height_at(textures, map.texture, before);
+        sum -= map.scale * rise / step * way;
+    }
+    return sum;
+}
+
 dvec3 of_tangent_space(std::span<const Texture> textures, const NormalMap& map,
                        const TexturePoint& point, const dvec3& normal) {
     const vec3 color = color_at(textures, map.texture, point).rgb;
@@ -78,6 +101,8 @@ dvec3 of_tangent_space(std::span<const Texture> textures, const NormalMap& map,
 
 dvec3 tilted(std::span<const Texture> textures, const NormalMap& map, const TexturePoint& point,
              const dvec3& normal) {
+    if (map.kind == NormalMap::Kind::Space)
+        return unit_or(raised_in_space(textures, map, point, normal), normal);
     if (!point.has_uv)
         return normal;
     return unit_or(map.kind == NormalMap::Kind::Tangent

@@ -21,11 +21,14 @@ constexpr double kFarthestPattern = 1e12;
 
 /// Returns the value from 0 to 1. POV-Ray wraps just above 1, so that a value of 1 stays.
 double wave_of(const Pattern& pattern, double value) {
+    if (pattern.wave == Pattern::Wave::None)
+        return value;
     constexpr double kWrap = 1.00001;
     double x = std::fmod(value * pattern.frequency + pattern.phase, kWrap);
     x = x < 0 ? x + kWrap : x;
     switch (pattern.wave) {
     case Pattern::Wave::Ramp:
+    case Pattern::Wave::None:
         break;
     case Pattern::Wave::Triangular:
         return x < 0.5 ? 2 * x : 2 * (1 - x);
@@ -57,14 +60,25 @@ void add(TransparentColor& sum, const TransparentColor& color, float share) {
     sum.transmit += share * color.transmit;
 }
 
+/// Moves a point and what lies around it.
+void move(const TextureStep& step, TexturePoint& point) {
+    point.at = warped(step, point.at);
+    if (step.kind != TextureStep::Kind::Affine)
+        return;
+    for (dvec3& side : point.sides)
+        side = {glm::dot(dvec3(step.rows[0]), side), glm::dot(dvec3(step.rows[1]), side),
+                glm::dot(dvec3(step.rows[2]), side)};
+}
+
 } // namespace
 
 PatternPlace evaluate(std::span<const Texture> textures, const Pattern& pattern,
                       const TexturePoint& point) {
     PatternPlace place{0, point};
     dvec3& at = place.at.at;
+    const bool takes_means = pattern.kind == Kind::Perlin;
     for (const TextureStep& step : pattern.steps)
-        at = warped(step, at);
+        takes_means ? move(step, place.at) : void(at = warped(step, at));
     if (pattern.turbulence != dvec3(0) && !adds_turbulence(pattern.kind))
         at += pattern.turbulence * turbulence(at, pattern.octaves);
     if (!is_finite(at) || max_component(glm::abs(at)) > kFarthestPattern) {
@@ -131,15 +145,8 @@ TransparentColor mix(std::span<const Texture> textures, const Texture& texture,
 }
 
 TransparentColor color_of_image(const Texture& texture, TexturePoint point) {
-    const auto turned = [](const TextureStep& step, const dvec3& v) {
-        return dvec3(glm::dot(dvec3(step.rows[0]), v), glm::dot(dvec3(step.rows[1]), v),
-                     glm::dot(dvec3(step.rows[2]), v));
-    };
-    for (const TextureStep& step : texture.pattern.steps) {
-        point.at = warped(step, point.at);
-        if (step.kind == TextureStep::Kind::Affine)
-            point.sides = {turned(step, point.sides[0]), turned(step, point.sides[1])};
-    }
+    for (const TextureStep& step : texture.pattern.steps)
+        move(step, point);
     return color_at(*texture.image, point.at, point.sides);
 }
 
@@ -170,6 +177,20 @@ TransparentColor color_at(std::span<const Texture> textures, uint32_t number,
         break;
     }
     return color_of_pattern(textures, texture, texture.on_uv ? moved_to_uv(point) : point);
+}
+
+double height_at(std::span<const Texture> textures, uint32_t number, const TexturePoint& point) {
+    const Texture& texture = textures[number];
+    if (texture.kind == TextureKind::Product) {
+        double all = 1;
+        for (const TextureStop& stop : texture.stops)
+            all *= stop.texture == kNoTexture ? double(mean_of(stop.color))
+                                              : height_at(textures, stop.texture, point);
+        return all;
+    }
+    if (texture.kind == TextureKind::Pattern && texture.pattern.wave == Pattern::Wave::None)
+        return evaluate(textures, texture.pattern, point).value;
+    return double(mean_of(color_at(textures, number, point)));
 }
 
 double value_at(std::span<const Texture> textures, uint32_t number, const TexturePoint& point) {

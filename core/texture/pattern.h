@@ -26,6 +26,10 @@ TransparentColor color_at(std::span<const Texture> textures, uint32_t number,
 /// Returns what varies in textures[number] as a number: the pattern's value, or the mean color.
 double value_at(std::span<const Texture> textures, uint32_t number, const TexturePoint& point);
 
+/// Returns the mean color of textures[number]. Values of patterns without a wave, and products of
+/// them, are not cut off at 0 and 1 as colors are.
+double height_at(std::span<const Texture> textures, uint32_t number, const TexturePoint& point);
+
 /// Returns Bezier's cubic with the control values of a Quilted pattern, which its seams follow.
 double quilted_curve(const Pattern& pattern, double t);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // POV-Ray's block patterns, which choose one of a list of colors (section 3.4.7.2 of its
-// documentation, "Discontinuous Patterns").
+// documentation, "Discontinuous Patterns"), and pbrt's dots.
+#include "core/texture/noise/perlin.h"
 #include "core/texture/pattern_value.h"
 
 #include <cmath>
@@ -86,6 +87,18 @@ double triangle_tile(const dvec3& at) {
     return stands_on_side ? kOnSide[odd][third(cell)] : kOnCorner[odd][third(corner)];
 }
 
+/// Half of the unit squares around whole coordinates have a dot, somewhere in them.
+/// Based on: Pharr, Jakob and Humphreys 2016, "Physically Based Rendering", section 10.6.
+double dot_tile(const dvec3& at) {
+    constexpr double kRadius = 0.35, kMaxShift = 0.5 - kRadius;
+    const double s = std::floor(at.x + 0.5), t = std::floor(at.y + 0.5);
+    const auto noise = [&](double ds, double dt) { return improved_noise({s + ds, t + dt, 0.5}); };
+    if (noise(0.5, 0.5) <= 0)
+        return 0;
+    const dvec2 middle(s + kMaxShift * noise(1.5, 2.8), t + kMaxShift * noise(4.5, 9.8));
+    return glm::distance(dvec2(at), middle) < kRadius ? 1 : 0;
+}
+
 } // namespace
 
 double discrete_value(const Pattern& pattern, const dvec3& at) {
@@ -96,8 +109,12 @@ double discrete_value(const Pattern& pattern, const dvec3& at) {
         return modulo(sum_of_cell(at), 2);
     case Pattern::Kind::Cubic:
         return cubic(at);
+    case Pattern::Kind::Dots:
+        return dot_tile(at);
     case Pattern::Kind::Hexagon:
         return hexagon(at);
+    case Pattern::Kind::Object:
+        return pattern.region.contains(at) ? 1 : 0;
     case Pattern::Kind::Square:
         return square_tile(at);
     case Pattern::Kind::Triangular:

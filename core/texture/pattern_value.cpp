@@ -4,7 +4,8 @@
 // by asking povray for values, and pattern_test.cpp compares with such values.
 #include "core/texture/pattern_value.h"
 #include "core/texture/fractal.h"
-#include "core/texture/random_cells.h"
+#include "core/texture/noise/perlin.h"
+#include "core/texture/noise/random_cells.h"
 
 #include <algorithm>
 #include <cmath>
@@ -25,7 +26,7 @@ double cycle(double x) {
 }
 
 double granite(const Pattern& pattern, const dvec3& at) {
-    const bool corrected = pattern.noise == NoiseKind::Corrected;
+    const bool corrected = pattern.noise != NoiseKind::Original;
     double sum = 0, frequency = 1;
     for (int i = 0; i < 6; ++i, frequency *= 2) {
         const double off = std::abs(0.5 - noise(4 * frequency * at, pattern.noise));
@@ -35,7 +36,7 @@ double granite(const Pattern& pattern, const dvec3& at) {
 }
 
 double wrinkles(const Pattern& pattern, const dvec3& at) {
-    const bool corrected = pattern.noise == NoiseKind::Corrected;
+    const bool corrected = pattern.noise != NoiseKind::Original;
     double sum = 0, frequency = 1;
     for (int i = 0; i < 10; ++i, frequency *= 2) {
         const double value = noise(frequency * at, pattern.noise);
@@ -180,9 +181,49 @@ double gradient(const Pattern& pattern, const dvec3& at) {
     return value > 1 ? fraction(value) : value;
 }
 
+/// pbrt's textures of noise. Based on: Pharr, Jakob and Humphreys 2016, "Physically Based
+/// Rendering", section 10.6.
+double perlin(const Pattern& pattern, const TexturePoint& point) {
+    using P = PerlinParameter;
+    const std::array<double, 10>& p = pattern.parameters;
+    const NoiseSum sum{p[P::kOctaves], p[P::kRoughness], point.sides};
+    switch (int(p[P::kForm])) {
+    case P::Turbulence:
+        return turbulence_sum(point.at, sum);
+    case P::Windy:
+        return windy_sum(point.at, point.sides);
+    case P::Marble:
+        return 0.5 + 0.5 * std::sin(point.at.y + p[P::kVariation] * noise_sum(point.at, sum));
+    default:
+        return noise_sum(point.at, sum);
+    }
+}
+
 /// Two spirals that run against each other.
 double double_spiral(const Pattern& pattern, const dvec3& at) {
     return fraction(triangle_of(spiral(pattern, at)) + triangle_of(std::hypot(at.x, at.y)));
+}
+
+/// Returns the value of a pattern that follows from the place alone.
+double value_of_place(Kind kind, const dvec3& at) {
+    switch (kind) {
+    case Kind::Boxed:
+        return std::max(0.0, 1 - max_component(glm::abs(at)));
+    case Kind::Cylindrical:
+        return std::max(0.0, 1 - std::hypot(at.x, at.z));
+    case Kind::Leopard:
+        return leopard(at);
+    case Kind::Onion:
+        return fraction(glm::length(at));
+    case Kind::Planar:
+        return std::max(0.0, 1 - std::abs(at.y));
+    case Kind::Radial:
+        return radial(at);
+    case Kind::Spherical:
+        return std::max(0.0, 1 - glm::length(at));
+    default:
+        return 0;
+    }
 }
 
 } // namespace
@@ -200,16 +241,12 @@ double continuous_value(std::span<const Texture> textures, const Pattern& patter
         return agate(pattern, at);
     case Kind::AngleOfIncidence:
         return angle_of_incidence(point);
-    case Kind::Boxed:
-        return std::max(0.0, 1 - max_component(glm::abs(at)));
     case Kind::Bozo:
         return noise(at, pattern.noise);
     case Kind::Cells:
         return cell_value(at);
     case Kind::Crackle:
         return crackle(pattern, at);
-    case Kind::Cylindrical:
-        return std::max(0.0, 1 - std::hypot(at.x, at.z));
     case Kind::Dents:
         return std::pow(noise(at, pattern.noise), 3);
     case Kind::Density:
@@ -222,24 +259,16 @@ double continuous_value(std::span<const Texture> textures, const Pattern& patter
         return gradient(pattern, at);
     case Kind::Granite:
         return granite(pattern, at);
-    case Kind::Leopard:
-        return leopard(at);
     case Kind::Marble:
         return marble(pattern, at);
-    case Kind::Onion:
-        return fraction(glm::length(at));
-    case Kind::Planar:
-        return std::max(0.0, 1 - std::abs(at.y));
+    case Kind::Perlin:
+        return perlin(pattern, point);
     case Kind::Quilted:
         return quilted(pattern, at);
-    case Kind::Radial:
-        return radial(at);
     case Kind::Ripples:
         return ripples(pattern, at);
     case Kind::Slope:
         return slope(pattern, point);
-    case Kind::Spherical:
-        return std::max(0.0, 1 - glm::length(at));
     case Kind::Spiral1:
         return spiral(pattern, at);
     case Kind::Spiral2:
@@ -251,7 +280,7 @@ double continuous_value(std::span<const Texture> textures, const Pattern& patter
     case Kind::Wrinkles:
         return wrinkles(pattern, at);
     default:
-        return 0;
+        return value_of_place(pattern.kind, at);
     }
 }
 

@@ -30,7 +30,8 @@ std::vector<bool> materials_on_uv(const Scene& scene) {
         for (const uint32_t map : {maps.reflection, maps.width, maps.emission, maps.metallic})
             wanted[m] = wanted[m] || (map != kNone && on_uv[map]);
         wanted[m] = wanted[m] || (material.texture && on_uv[material.texture->texture]) ||
-                    (material.normal_map && !scene.textures.empty()) ||
+                    (material.normal_map && !scene.textures.empty() &&
+                     material.normal_map->kind != NormalMap::Kind::Space) ||
                     (material.bump && on_uv[material.bump->pattern.texture]) ||
                     (material.under != kNone && wanted[material.under]);
         if (material.mix)

@@ -3,9 +3,10 @@
 // docs/decisions/0033-textures-are-trees-in-the-scene.md says why it has this form.
 #pragma once
 
+#include "core/region/region.h"
 #include "core/texture/formula.h"
 #include "core/texture/image_texture.h"
-#include "core/texture/noise.h"
+#include "core/texture/noise/noise.h"
 
 #include <array>
 #include <cstdint>
@@ -37,6 +38,7 @@ struct TextureStep {
         Spherical,
         Toroidal,
         Planar,
+        BoxNet, // unfolds the surface of the box from -1 to 1 into the unit square
     };
     Kind kind = Kind::Affine;
     std::array<dvec4, 3> rows{dvec4(1, 0, 0, 0), dvec4(0, 1, 0, 0), dvec4(0, 0, 1, 0)};
@@ -53,8 +55,9 @@ struct DensityGrid {
     bool operator==(const DensityGrid&) const = default;
 };
 
-/// A number that varies in space: POV-Ray's patterns, with their names. Those from Brick on have
-/// whole numbers as values, which choose a stop; those before have values from 0 to 1.
+/// A number that varies in space: POV-Ray's patterns, with their names, and Dots and Perlin of
+/// pbrt. Those from Brick on have whole numbers as values, which choose a stop; those before have
+/// values from 0 to 1, except for Perlin.
 struct Pattern {
     enum class Kind : uint64_t {
         Agate,
@@ -73,6 +76,7 @@ struct Pattern {
         Leopard,
         Marble,
         Onion,
+        Perlin, // parameters: see PerlinParameter
         Planar,
         Quilted, // parameters: the control values
         Radial,
@@ -89,11 +93,14 @@ struct Pattern {
         Brick,   // parameters: size, mortar
         Checker,
         Cubic,
+        Dots, // 1 in a dot of the plane of x and y, else 0
         Hexagon,
+        Object, // 1 inside of the pattern's region, else 0
         Square,
         Triangular,
     };
-    enum class Wave : uint64_t { Ramp, Triangular, Sine, Scallop, Cubic, Power };
+    /// None leaves values as they are, whatever frequency and phase.
+    enum class Wave : uint64_t { Ramp, Triangular, Sine, Scallop, Cubic, Power, None };
 
     Kind kind = Kind::Bozo;
     std::array<double, 10> parameters{};
@@ -109,8 +116,21 @@ struct Pattern {
     std::vector<TextureStep> steps; // in their order, before the turbulence
     Formula formula;                // of Kind::Function: of x, y and z
     DensityGrid grid;               // of Kind::Density
+    Region region;                  // of Kind::Object
 
     bool operator==(const Pattern&) const = default;
+};
+
+/// The places of what makes a pattern of Perlin's improved noise among its parameters.
+struct PerlinParameter {
+    enum Place : size_t {
+        kForm,      // one of Form
+        kOctaves,   // at most kMaxNoiseOctaves (perlin.h)
+        kRoughness, // the share of each octave in the one before
+        kVariation, // of Marble: how far it is out of shape
+    };
+    /// The sum of octaves, that of their magnitudes, waves in gusts of wind, or a wave along y.
+    enum Form { Sum, Turbulence, Windy, Marble };
 };
 
 /// A color at a value of the pattern, or a texture in its place.

@@ -72,6 +72,21 @@ dvec3 wrapped(const TextureStep& step, const dvec3& at) {
     return turned_from_z(flat, int(step.rows[0].x));
 }
 
+/// The sides stand in a row of four, the top above and the bottom below that of +z, as POV-Ray's
+/// documentation shows (section 3.4.7.7.1, "Supported Objects").
+dvec3 unfolded(const dvec3& at) {
+    const int axis = major_axis(at);
+    const bool high = at[axis] > 0;
+    constexpr double kColumn = 0.125, kRow = 1 / 6.0; // half of each
+    if (axis == 1)
+        return {3 * kColumn + kColumn * at.x, high ? 5 * kRow - kRow * at.z : kRow + kRow * at.z,
+                0};
+    const double across = axis == 0 ? at.z : at.x;
+    const double column = axis == 0 ? (high ? 5 : 1) : (high ? 3 : 7);
+    const bool turned = axis == 0 ? high : !high;
+    return {kColumn * (column + (turned ? -across : across)), 0.5 + kRow * at.y, 0};
+}
+
 } // namespace
 
 dvec3 warped(const TextureStep& step, const dvec3& at) {
@@ -89,6 +104,8 @@ dvec3 warped(const TextureStep& step, const dvec3& at) {
     case TextureStep::Kind::Toroidal:
     case TextureStep::Kind::Planar:
         return wrapped(step, at);
+    case TextureStep::Kind::BoxNet:
+        return unfolded(at);
     default:
         return affine(step, at);
     }

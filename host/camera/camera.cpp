@@ -46,6 +46,8 @@ Result<Done> check_camera(const Camera& camera) {
     if (!(camera.fov_degrees > 0 && camera.fov_degrees < 180))
         return Error{fmt::format("the camera's field of view is {}, not between 0 and 180 degrees",
                                  camera.fov_degrees)};
+    if (!(camera.nearest >= 0 && camera.nearest <= kFarthest))
+        return Error{fmt::format("the camera sees nothing nearer than {}", camera.nearest)};
     // Points that differ by so little that their distance comes out as 0 are refused too.
     if (!(glm::length(camera.target - camera.eye) > 0))
         return Error{"the camera looks from a point at itself"};
@@ -61,7 +63,7 @@ Result<Done> check_camera(const Camera& camera) {
 }
 
 Pinhole::Pinhole(const Camera& camera, const PicturePart& part, const Scene* scene)
-    : part_(part), scene_(scene), eye_(camera.eye) {
+    : part_(part), scene_(scene), nearest_(camera.nearest), eye_(camera.eye) {
     assert(part.size.width > 0 && part.left + part.size.width <= part.picture.width);
     assert(part.size.height > 0 && part.top + part.size.height <= part.picture.height);
     assert(check_camera(camera));
@@ -104,6 +106,8 @@ Ray Pinhole::ray(uint32_t x, uint32_t y, const dvec2& place, const dvec2& lens,
     if (bump_ && scene_ && ray.dir != dvec3(0))
         ray.dir = bumped(scene_->textures, scene_->bumps, *bump_, {at.x - 0.5, 0.5 - at.y, 0},
                          glm::normalize(ray.dir), ray.dir);
+    if (nearest_ > 0 && ray.dir != dvec3(0))
+        ray.t_min = nearest_ / glm::length(ray.dir);
     return ray;
 }
 

@@ -67,6 +67,7 @@ private:
     const Scene* scene_;
     std::optional<Bump> bump_;
     std::optional<Lens> lens_;
+    double nearest_;
     dvec3 eye_, right_, up_;
     // From the eye to the middle of the image plane, and from there to its right and upper edge.
     dvec3 middle_, to_right_, to_top_;

@@ -68,8 +68,9 @@ public:
 
     /// Finds the light at the points, with that of the bounces before; null: there are none.
     Result<Done> gather(const BouncedLight* before) {
+        // As povray, where a scene does not say `media on` in its radiosity.
         const Whitted integrator(scene_, up_, options_.max_depth, options_.shadows, before,
-                                 uint32_t(std::max<size_t>(light_stride_, 1)));
+                                 uint32_t(std::max<size_t>(light_stride_, 1)), /* media= */ false);
         for (size_t first = 0; first < points_.size(); first += kPointsAtOnce) {
             const size_t count = std::min(kPointsAtOnce, points_.size() - first);
             if (const Result<Done> done = gather(integrator, first, count); !done)

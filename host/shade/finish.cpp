@@ -62,9 +62,8 @@ static double highlight(const SurfacePoint& surface, const dvec3& towards) {
     return sum;
 }
 
-/// Returns a number from 0 to 1 that depends on the place alone.
 /// Hash: Steele, Lea and Flood 2014, SplitMix64.
-static float random_share(const dvec3& at) {
+float random_share(const dvec3& at) {
     uint64_t bits = 0;
     for (int i = 0; i < 3; ++i) {
         bits = (bits ^ std::bit_cast<uint64_t>(at[i])) + 0x9e3779b97f4a7c15u;
@@ -73,6 +72,25 @@ static float random_share(const dvec3& at) {
         bits ^= bits >> 31;
     }
     return float(bits >> 40) * 0x1p-24f;
+}
+
+/// What a thin film on the surface makes of a lamp's light: the waves that its two sides reflect
+/// amplify or cancel each other. povray's light has this formula.
+static vec3 interference(const SurfacePoint& surface, double light_cosine) {
+    constexpr Octaves kOctaves{2, 0.5, 5};
+    const Finish& finish = *surface.material->finish;
+    double thickness = finish.irid_thickness;
+    if (finish.irid_turbulence != 0)
+        thickness *=
+            1 + double(finish.irid_turbulence) *
+                    (2 * scalar_turbulence(surface.position, kOctaves, NoiseKind::Corrected) - 1);
+    const double way =
+        thickness * (light_cosine + std::abs(glm::dot(surface.view, surface.normal)));
+    vec3 factor;
+    for (int i = 0; i < 3; ++i)
+        factor[i] = 1 + finish.irid * float(std::cos(2 * std::numbers::pi * way /
+                                                     double(finish.irid_wavelengths[i])));
+    return factor;
 }
 
 vec3 finish_light(const SurfacePoint& surface, const dvec3& towards, const vec3& arriving,
@@ -86,6 +104,8 @@ vec3 finish_light(const SurfacePoint& surface, const dvec3& towards, const vec3&
     if (highlights)
         light += surface.maps.gloss() * metallic_tint(surface, finish.metallic, cosine) *
                  float(highlight(surface, towards));
+    if (finish.irid != 0)
+        light *= interference(surface, cosine);
     return light * arriving;
 }
 

@@ -15,4 +15,7 @@ vec3 finish_light(const SurfacePoint& surface, const dvec3& towards, const vec3&
 /// As branches(); surface.material has a finish.
 Branches finish_branches(const SurfacePoint& surface, bool total);
 
+/// Returns a number from 0 to 1 that depends on the place alone.
+float random_share(const dvec3& at);
+
 } // namespace ovc

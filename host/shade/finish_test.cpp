@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numbers>
 
 namespace ovc {
@@ -60,6 +61,34 @@ TEST(Finish, HighlightsPeakAtTheMirrorsAngle) {
     expect_near(finish_light(point, kMirrored, vec3(1), true), vec3(1.25f));
     EXPECT_LT(finish_light(point, {0, 1, 0}, vec3(1), true).x, 0.2f);
     expect_near(finish_light(point, kMirrored, vec3(1), /* highlights= */ false), vec3(0));
+}
+
+/// povray 3.7.0.10 draws a white plane with these lamps and films so, relative to one without.
+TEST(Finish, FilmsHaveTheColorsThatPovrayDraws) {
+    Finish finish;
+    finish.irid = 0.2f;
+    finish.irid_thickness = 0.1f;
+    const auto factor = [](const Finish& film, const dvec3& at, const dvec3& view,
+                           const dvec3& towards) {
+        SeenTriangle seen(film);
+        seen.point.position = at;
+        seen.point.view = view;
+        const vec3 with = finish_light(seen.point, towards, vec3(1), true);
+        return (with / finish_light(SeenTriangle({}).point, towards, vec3(1), true) - 1.0f) /
+               film.irid;
+    };
+    const dvec3 up(0, 1, 0);
+    const vec3 along = factor(finish, dvec3(0), -up, up);
+    for (int i = 0; i < 3; ++i)
+        EXPECT_NEAR(along[i], vec3(-0.2225f, -0.7486f, -0.8661f)[i], 1e-3);
+    finish.irid_thickness = 0.5f;
+    EXPECT_NEAR(factor(finish, dvec3(0), -up, {std::sqrt(1 - 0.7035 * 0.7035), 0.7035, 0}).x, 0.207,
+                2e-3);
+    finish.irid_thickness = 0.02f;
+    finish.irid_turbulence = 1;
+    // The film there is 1.7356 times as thick.
+    EXPECT_NEAR(factor(finish, {-0.875, 0.875, 0}, -up, up).x,
+                std::cos(2 * std::numbers::pi * 2 * 0.02 * 1.7356 / 0.7), 1e-3);
 }
 
 TEST(Finish, MetalColorsItsHighlight) {

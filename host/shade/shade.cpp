@@ -253,9 +253,9 @@ vec3 share_kept(const Ray& ray, const SurfacePoint& surface) {
     if (!absorption || surface.entering)
         return vec3(1);
     const double way = glm::distance(surface.position, ray.org) / double(absorption->distance);
-    const double share = absorption->power >= 1000
-                             ? std::exp(-way)
-                             : 1 / (1 + std::pow(way, double(absorption->power)));
+    if (absorption->power >= 1000) // as povray draws it
+        return glm::exp(float(way) * (absorption->color - 1.0f));
+    const double share = 1 / (1 + std::pow(way, double(absorption->power)));
     return glm::mix(absorption->color, vec3(1), float(share));
 }
 

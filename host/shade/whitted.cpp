@@ -56,6 +56,18 @@ static bool is_inside(const Scene& scene, const Ray& ray, const Hit& hit) {
     return glm::dot(glm::cross(t[1] - t[0], t[2] - t[0]), ray.dir) > 0;
 }
 
+static bool is_hollow(const Scene& scene, const Hit& hit) {
+    return scene.materials[scene.meshes[hit.id.mesh].material].hollow;
+}
+
+/// Returns the share of a shadow ray's light that the media of a solid leave on its way out.
+static vec3 share_of_media(const Scene& scene, const Ray& ray, const Hit& hit) {
+    if (!is_inside(scene, ray, hit))
+        return vec3(1);
+    const std::vector<Medium>& media = scene.materials[scene.meshes[hit.id.mesh].material].media;
+    return media.empty() ? vec3(1) : share_through_media(scene.textures, media, ray, hit.t);
+}
+
 /// Returns the share of light from everywhere that the surface's finishes scatter.
 static vec3 reflected_by_finish(const SurfacePoint& surface) {
     vec3 sum(0);
@@ -93,7 +105,7 @@ void tell_simplifications(const Scene& scene, std::span<const Light> lights,
 }
 
 Whitted::Whitted(const Scene& scene, const vec3& up, uint32_t max_depth, bool shadows,
-                 const BouncedLight* bounced, uint32_t light_stride)
+                 const BouncedLight* bounced, uint32_t light_stride, bool media)
     : scene_(scene),
       up_(up),
       max_depth_(max_depth),
@@ -101,7 +113,7 @@ Whitted::Whitted(const Scene& scene, const vec3& up, uint32_t max_depth, bool sh
       bounced_(bounced),
       light_stride_(light_stride),
       light_may_pass_(lets_light_through(scene)),
-      has_media_(has_media(scene)) {
+      has_media_(media && has_media(scene)) {
     assert(max_depth <= UINT16_MAX); // Path::depth counts to it
     assert(light_stride >= 1);
 }
@@ -132,15 +144,19 @@ void Whitted::shade(std::span<const Ray> rays, std::span<const Path> paths,
                 light_up(scene_.lights[light], light, met, film, spawned);
 }
 
-/// Takes the light that fog keeps from the path, and adds the fog's own. There is none inside of
-/// solids.
+/// Takes the light that fog and rainbows keep from the path, and adds their own. There is none
+/// inside of solids.
 void Whitted::dim_by_fog(const Ray& ray, const Hit& hit, Path& path, Film& film) const {
-    const std::vector<Fog>& fogs = scene_.background.fogs;
-    if (fogs.empty() || (hit.is_hit() && is_inside(scene_, ray, hit)))
+    const Background& background = scene_.background;
+    if ((background.fogs.empty() && background.rainbows.empty()) ||
+        (hit.is_hit() && is_inside(scene_, ray, hit) && !is_hollow(scene_, hit)))
         return;
-    const ThroughFog fog = through_fog(fogs, ray, hit.is_hit() ? hit.t : double(INFINITY));
-    film.add(path.pixel, path.weight * fog.added);
-    path.weight *= fog.share;
+    const double end = hit.is_hit() ? hit.t : double(INFINITY);
+    for (const ThroughFog& fog : {through_fog(background.fogs, ray, end),
+                                  through_rainbows(background.rainbows, ray, end)}) {
+        film.add(path.pixel, path.weight * fog.added);
+        path.weight *= fog.share;
+    }
 }
 
 /// The way of a ray that hits nothing through media, as povray has it.
@@ -152,9 +168,11 @@ std::span<const Medium> Whitted::media_before(const Ray& ray, const Path& path,
     const bool leaves = hit.is_hit() && is_inside(scene_, ray, hit);
     if (leaves && !scene_.materials[material].media.empty())
         return scene_.materials[material].media;
+    if (leaves && !scene_.materials[material].hollow)
+        return {};
     if (path.inside != kNone && hit.is_hit())
         return scene_.materials[path.inside].media;
-    return leaves ? std::span<const Medium>() : scene_.background.media;
+    return scene_.background.media;
 }
 
 /// Takes the light that media keep from the path, and adds theirs and that of lamps which they
@@ -179,16 +197,24 @@ void Whitted::scatter(const ScatteringPlace& from, const dvec3& way, const Path&
         const Light& light = scene_.lights[number];
         const FromLight arriving = light.lights_media ? light_at(light, from.at) : FromLight{};
         const double phase = phase_of(*from.medium, glm::dot(way, arriving.towards));
+        const Ray ray = shadow_ray(light, from.at);
         const vec3 seen = path.weight * from.share * float(phase) * arriving.color *
-                          std::numbers::inv_pi_v<float>;
+                          share_of_air(light, ray) * std::numbers::inv_pi_v<float>;
         if (max_component(seen) < kMinShadow)
             continue;
         if (!shadows_ || light.shadowless)
             film.add(path.pixel, seen);
         else
-            spawned.shadows.push(shadow_ray(light, from.at), TriangleId(),
-                                 {path.pixel, number, 0, seen});
+            spawned.shadows.push(ray, TriangleId(), {path.pixel, number, 0, seen});
     }
+}
+
+/// Returns the share of a light that comes through the air on the way to it.
+vec3 Whitted::share_of_air(const Light& light, const Ray& ray) const {
+    if (!light.fades_in_air)
+        return vec3(1);
+    return through_fog(scene_.background.fogs, ray, 1).share *
+           share_through_media(scene_.textures, scene_.background.media, ray, 1);
 }
 
 /// Returns in whose media a ray is that leaves the surface.
@@ -236,14 +262,15 @@ Whitted::Met Whitted::meet(const Ray& ray, const Path& path, const Hit& hit,
 
 void Whitted::light_up(const Light& light, uint32_t number, const Met& met, Film& film,
                        Spawned& spawned) const {
-    const vec3 arriving = float(light_stride_) * met.weight * direct_light(light, met.surface);
+    vec3 arriving = float(light_stride_) * met.weight * direct_light(light, met.surface);
     if (arriving == vec3(0))
         return;
+    const Ray ray = shadow_ray(light, met.surface.position);
+    arriving *= share_of_air(light, ray);
     if (!shadows_ || light.shadowless) {
         film.add(met.pixel, arriving);
         return;
     }
-    const Ray ray = shadow_ray(light, met.surface.position);
     // The surface itself may hide a point of an area light whose middle lights it.
     if (light.shadow_offset == dvec3(0) || glm::dot(ray.dir, met.surface.geometric_normal) > 0)
         spawned.shadows.push(ray, met.id, {met.pixel, number, 0, arriving});
@@ -252,6 +279,8 @@ void Whitted::light_up(const Light& light, uint32_t number, const Met& met, Film
 bool Whitted::pass(const Hit& hit, Ray& ray, Shadow& shadow) const {
     const SurfacePoint glass = surface_point(scene_, ray, hit);
     shadow.arriving *= light_through(glass) * light_kept(ray, glass);
+    if (has_media_)
+        shadow.arriving *= share_of_media(scene_, ray, hit);
     if (max_component(shadow.arriving) < kMinShadow)
         shadow.arriving = vec3(0);
     ++shadow.passed;

@@ -33,9 +33,10 @@ public:
     /// color alone. up: of the background, unit length. The scene must outlive it, and its lights
     /// must be placed. bounced: the scene's diffuse light, which must outlive it; null: none.
     /// light_stride: a path asks every so many-th light, which counts for as many; its sample says
-    /// which ones, so that so many samples in a row have asked all.
+    /// which ones, so that so many samples in a row have asked all. media: whether the scene's are
+    /// seen.
     Whitted(const Scene& scene, const vec3& up, uint32_t max_depth, bool shadows,
-            const BouncedLight* bounced = nullptr, uint32_t light_stride = 1);
+            const BouncedLight* bounced = nullptr, uint32_t light_stride = 1, bool media = true);
 
     void shade(std::span<const Ray> rays, std::span<const Path> paths, std::span<const Hit> hits,
                Film& film, Spawned& spawned) const override;
@@ -50,6 +51,7 @@ private:
     std::span<const Medium> media_before(const Ray& ray, const Path& path, const Hit& hit) const;
     void scatter(const ScatteringPlace& from, const dvec3& way, const Path& path, Film& film,
                  Spawned& spawned) const;
+    vec3 share_of_air(const Light& light, const Ray& ray) const;
     uint32_t inside_behind(const Path& path, const Met& met, bool goes_through) const;
     Met meet(const Ray& ray, const Path& path, const Hit& hit, Spawned& spawned) const;
     void light_up(const Light& light, uint32_t number, const Met& met, Film& film,

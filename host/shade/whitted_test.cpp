@@ -293,6 +293,77 @@ TEST(Whitted, MediaFillWhatTheirSurfaceEncloses) {
     EXPECT_NEAR(seen_through({misty}, false), empty, 1e-6);
 }
 
+/// Returns the red of a white floor below a clear box, 2 high, under a lamp high above.
+static float floor_below(const Material& box, const Background& air = {}, bool fades = false) {
+    Scene scene;
+    add_box(scene, box, {-2, 1, -2}, {2, 3, 2});
+    scene.materials.push_back({"floor", vec3(1)});
+    scene.materials[1].finish = Finish{};
+    scene.add_mesh("floor", 1, quad({-9, 0, 9}, {9, 0, 9}, {9, 0, -9}, {-9, 0, -9}));
+    scene.lights = {{{0, 1000, 0}, vec3(0.5f * std::numbers::pi_v<float>)}};
+    scene.lights[0].fades_in_air = fades;
+    scene.background = air;
+    Camera camera;
+    camera.eye = {0, 0.5, 9};
+    camera.target = {0, 0, 0};
+    camera.fov_degrees = 0.01;
+    return render(scene, camera).pixels[0].r;
+}
+
+/// As povray 3.7.0.10 draws them, whatever media_attenuation says.
+TEST(Whitted, MediaInASolidDimItsShadow) {
+    Material box;
+    box.transmission = 1;
+    const float bare = floor_below(box);
+    EXPECT_NEAR(bare, 0.5f, 1e-3);
+    Medium dark, misty;
+    dark.absorption = vec3(0.3f);
+    misty.scattering = vec3(0.2f);
+    box.media = {dark, misty};
+    EXPECT_NEAR(floor_below(box), bare * std::exp(-1.0f), 1e-3);
+}
+
+TEST(Whitted, ALampFadesInTheAirIfItIsToldTo) {
+    Material box;
+    box.transmission = 1;
+    Background air;
+    air.fogs = {{{vec3(0)}, 1000}};
+    const float lit = floor_below(box, air);
+    EXPECT_NEAR(floor_below(box, air, /* fades= */ true), lit * std::exp(-1.0f), 1e-3);
+}
+
+TEST(Whitted, FogFillsHollowSolids) {
+    const auto seen = [](bool hollow) {
+        Scene scene;
+        Material clear;
+        clear.transmission = 1;
+        clear.hollow = hollow;
+        add_box(scene, clear, {-1, -1, -3}, {1, 1, 3});
+        scene.background = {vec3(1), vec3(1)};
+        scene.materials.push_back({"wall", vec3(1)});
+        scene.materials[1].finish = Finish{.ambient = vec3(1), .diffuse = 0};
+        scene.add_mesh("wall", 1, quad({-9, -9, -4}, {9, -9, -4}, {9, 9, -4}, {-9, 9, -4}));
+        scene.background.fogs = {{{vec3(0)}, 10}};
+        scene.may_add_light = false;
+        Camera camera;
+        camera.eye = {0, 0, 6};
+        camera.fov_degrees = 0.01;
+        return render(scene, camera).pixels[0].r;
+    };
+    EXPECT_NEAR(seen(true), std::exp(-1.0f), 1e-3);
+    EXPECT_NEAR(seen(false), std::exp(-0.4f), 1e-3);
+}
+
+TEST(Whitted, ACameraDoesNotSeeTheWallItStandsOn) {
+    Scene scene = room();
+    scene.add_mesh("gate", 1, quad({-4, -4, 9}, {4, -4, 9}, {4, 6, 9}, {-4, 6, 9}));
+    Camera camera = towards({3, 0, 0}); // its eye lies in the gate
+    const float bare = render(room(), camera).pixels[0].r;
+    EXPECT_NE(render(scene, camera).pixels[0].r, bare);
+    camera.nearest = 1e-6;
+    EXPECT_EQ(render(scene, camera).pixels[0].r, bare);
+}
+
 TEST(Whitted, BatchSizeDoesNotChangeAPixelThroughSplittingRays) {
     const Scene scene = room_with_box({"glass", vec3(0.2f), 0.45f, 0.5f, {1, 0.9f, 0.8f}, 1.5});
     RenderOptions options;

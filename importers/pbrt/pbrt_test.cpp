@@ -222,7 +222,7 @@ TEST(Pbrt, WarningsComeOncePerKindWithTheirPlace) {
         "\"gone.ply\"\nIdentity Include \"gone.pbrt\"\nObjectInstance \"gone\"\n"
         "LightSource \"laser\"\nAttributeEnd\nCoordSysTransform \"gone\"\n"
         "Shape \"sphere\" \"money radius\" 3\n"
-        "Texture \"t\" \"color\" \"marble\"\n";
+        "Texture \"t\" \"color\" \"ptex\"\n";
     const Reading reading = read(folder, text);
     ASSERT_TRUE(reading.scene);
     EXPECT_EQ(reading.warnings,
@@ -234,7 +234,7 @@ TEST(Pbrt, WarningsComeOncePerKindWithTheirPlace) {
                   "a.pbrt:12: AttributeEnd without a beginning left out",
                   "a.pbrt:13: there is no coordinate system 'gone'",
                   "a.pbrt:14: parameters of type 'money' left out",
-                  "a.pbrt:15: textures 'marble' are shown by their mean",
+                  "a.pbrt:15: textures 'ptex' are shown by their mean",
                   "a.pbrt:10: there is no object 'gone'"}));
 }
 

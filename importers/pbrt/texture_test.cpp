@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Textures of PBRT files: pictures and patterns on their mappings, and what materials do with them.
+#include "core/texture/noise/perlin.h"
 #include "core/texture/pattern.h"
 #include "importers/test_files.h"
 
@@ -157,14 +158,56 @@ TEST(PbrtTexture, ProductsMixesAndBoardsAreMadeOfParts) {
     expect_near(solid.color_of({0.5, 1.5, 2.5}, uv), vec3(0));
 }
 
+TEST(PbrtTexture, NoiseLiesInTheSpaceOfItsTexture) {
+    const auto made = [](const std::string& texture) {
+        return read_textured("AttributeBegin Scale 2 2 2 Texture \"t\" \"color\" " + texture +
+                             " AttributeEnd Material \"matte\" \"texture Kd\" \"t\"" +
+                             kTexturedTriangle);
+    };
+    const dvec3 at(0.3, 1.4, -2.2);
+    const TexturedScene wrinkled =
+        made("\"wrinkled\" \"integer octaves\" 3 \"float roughness\" 0.25");
+    EXPECT_TRUE(wrinkled.warnings.empty());
+    expect_near(wrinkled.color_of(2.0 * at, dvec2(0)), vec3(float(turbulence_sum(at, {3, 0.25}))));
+    EXPECT_TRUE(wrinkled.scene.meshes[0].uv.empty());
+    const dvec3 high(0.4, 0.6, 0.3);
+    expect_near(made("\"fbm\" \"integer octaves\" 2").color_of(2.0 * high, dvec2(0)),
+                vec3(float(std::clamp(noise_sum(high, {2, 0.5}), 0.0, 1.0))));
+    // Where the wave of marble is lowest and highest, its color is that of either end.
+    const TexturedScene marble = made("\"marble\" \"float variation\" 0 \"float scale\" 3");
+    for (const double height : {-0.5, 0.5})
+        expect_near(marble.color_of({0, height * std::numbers::pi / 3 * 2, 0}, dvec2(0)),
+                    1.5f * vec3(0.58f, 0.58f, 0.6f));
+}
+
+TEST(PbrtTexture, DotsAndCornersLieOnTextureCoordinates) {
+    const auto made = [](const std::string& texture) {
+        return read_textured("Texture \"t\" \"color\" " + texture +
+                             " Material \"matte\" \"texture Kd\" \"t\"" + kTexturedTriangle);
+    };
+    const TexturedScene corners = made("\"bilerp\" \"rgb v00\" [1 0 0] \"rgb v01\" [0 1 0] "
+                                       "\"rgb v10\" [0 0 1] \"rgb v11\" [1 1 1]");
+    EXPECT_TRUE(corners.warnings.empty());
+    expect_near(corners.color_of(dvec3(0), {0.25, 0.5}), vec3(0.5f, 0.5f, 0.25f));
+    expect_near(corners.color_of(dvec3(0), {1, 0}), vec3(0, 0, 1));
+    const TexturedScene dots = made("\"dots\" \"rgb inside\" [1 0 0] \"float uscale\" 40 "
+                                    "\"float vscale\" 40");
+    int inside = 0;
+    for (int i = 0; i < 10000; ++i)
+        inside += dots.color_of(dvec3(0), {(i % 100) / 100.0, (i / 100) / 100.0}) == vec3(1, 0, 0);
+    // Less than half of the squares have a dot, of pi 0.35^2 of their area.
+    EXPECT_GT(inside, 10000 * 0.35 * std::numbers::pi * 0.35 * 0.35);
+    EXPECT_LT(inside, 10000 * 0.5 * std::numbers::pi * 0.35 * 0.35);
+}
+
 TEST(PbrtTexture, APatternThatIsNotKnownIsItsMeanAndSaid) {
     const TexturedScene read = read_textured(
-        "Texture \"n\" \"color\" \"marble\"\nTexture \"t\" \"color\" \"scale\" \"texture tex1\" "
+        "Texture \"n\" \"color\" \"ptex\"\nTexture \"t\" \"color\" \"scale\" \"texture tex1\" "
         "\"n\" Material \"matte\" \"texture Kd\" \"t\"" +
         std::string(kTexturedTriangle));
     EXPECT_FALSE(read.material().texture);
     EXPECT_EQ(read.warnings,
-              (std::vector<std::string>{"a.pbrt:2: textures 'marble' are shown by their mean"}));
+              (std::vector<std::string>{"a.pbrt:2: textures 'ptex' are shown by their mean"}));
 }
 
 TEST(PbrtTexture, MaterialsTakeColorsReflectionsHolesAndBumps) {
@@ -183,6 +226,14 @@ TEST(PbrtTexture, MaterialsTakeColorsReflectionsHolesAndBumps) {
     ASSERT_TRUE(plastic.material().normal_map);
     EXPECT_EQ(plastic.material().normal_map->kind, NormalMap::Kind::Height);
     EXPECT_EQ(plastic.scene.pictures.size(), 2u);
+    const TexturedScene solid = read_textured(
+        "Texture \"w\" \"float\" \"windy\" Texture \"s\" \"float\" \"scale\" \"texture tex1\" "
+        "\"w\" \"float tex2\" 0.1 Material \"matte\" \"texture bumpmap\" \"s\"" +
+        std::string(kTexturedTriangle));
+    EXPECT_TRUE(solid.warnings.empty());
+    ASSERT_TRUE(solid.material().normal_map);
+    EXPECT_EQ(solid.material().normal_map->kind, NormalMap::Kind::Space);
+    EXPECT_TRUE(solid.scene.meshes[0].uv.empty());
     const TexturedScene uber =
         read_textured(pictures + "Material \"uber\" \"rgb Kd\" [1 0 0] \"texture opacity\" \"f\"" +
                       kTexturedTriangle);

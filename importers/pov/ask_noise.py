@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Asks povray for the values of its noise and prints the numbers of core/texture/noise_values.h.
+"""Asks povray for its noise and prints the numbers of core/texture/noise/noise_values.h.
 usage: ask_noise.py [--check HEADER]
 
 Between two points of a lattice of unit cells, noise is S(1 - t) (a + g t) + S(t) (b + h (t - 1))
 along an axis, with S(t) = 3 t^2 - 2 t^3, a value a or b and a slope g or h at each of the two
 points. So the values at both points and at two places in between give both slopes. Each point has
 one of 256 classes. The class of a point is the shuffled number of a shuffled number of a shuffled
-number of its coordinates: see lattice_number() in core/texture/noise.cpp. All of this was found by
-asking; vturbulence() of one octave prints three such noises.
+number of its coordinates: see lattice_number() in core/texture/noise/noise.cpp. All of this was
+found by asking; vturbulence() of one octave prints three such noises.
 
 With --check the program fails where a number of the header differs. Without povray it exits with
 77.

@@ -8,6 +8,7 @@
 #include "importers/pov/shapes/bounds.h"
 #include "importers/pov/solid.h"
 #include "importers/pov/trace.h"
+#include "importers/pov/values/transform.h"
 #include "importers/readers.h"
 
 #include <fmt/format.h>
@@ -69,6 +70,22 @@ Texture on_texture_coordinates(Texture texture) {
 dvec2 into_circle(const dvec2& at) {
     const double length = glm::length(at);
     return length > 0 ? std::max(std::abs(at.x), std::abs(at.y)) / length * at : at;
+}
+
+/// Returns the steps from the world to the texture coordinates of a shape; none where they are not
+/// known.
+std::vector<TextureStep> to_uv_of(const Object& object, const dmat4& placed) {
+    const Shape* const shape = std::get_if<Shape>(&object.shape);
+    if (shape && !shape->knows_uv)
+        return {};
+    if (!shape || shape->to_uv.empty()) { // povray takes those of the world
+        TextureStep flat;
+        flat.rows[2] = dvec4(0);
+        return {flat};
+    }
+    std::vector<TextureStep> steps = {{TextureStep::Kind::Affine, rows_of(glm::inverse(placed))}};
+    steps.insert(steps.end(), shape->to_uv.begin(), shape->to_uv.end());
+    return steps;
 }
 
 void add_light(const LightSource& source, const dmat4& placed, Scene& scene) {
@@ -161,6 +178,9 @@ private:
         const bool has_holes = pigment.holes && (!on_uv || has_uv);
         const Color& color = has_holes ? pigment.holes->color : pigment.color;
         materials_.set_has_uv(has_uv && !has_holes);
+        const bool in_formulas = on_uv && object.kind != "mesh" && object.kind != "mesh2";
+        materials_.set_to_uv(in_formulas ? to_uv_of(object, from.placed)
+                                         : std::vector<TextureStep>());
         const uint32_t material =
             on_uv && !pigment.uv_mapping
                 ? materials_.number(on_texture_coordinates(texture), color, from.texture_placed,
@@ -170,9 +190,10 @@ private:
         Cover cover{material};
         cover.curved = is_curved(object);
         cover.uv = materials_.is_on_uv(material);
-        if (on_uv && pigment.pattern && !cover.uv && look_.tell)
+        if (on_uv && pigment.pattern && !materials_.maps_uv() && look_.tell)
             look_.tell({"uv_mapping of a shape", object.place,
-                        "uv_mapping is left out except on meshes outside of solids"});
+                        "uv_mapping of lathes, patches, parametrics and meshes in solids is left "
+                        "out"});
         if (has_holes)
             cover.holes = holes.number(
                 pigment, on_uv ? pigment.placed : from.texture_placed * pigment.placed, on_uv);
@@ -602,13 +623,14 @@ CutObject cut_object(const Object& object, uint64_t max_triangles) {
     for (const Placed& p : gatherer.placed) {
         if (const auto* plane = std::get_if<PlaneShape>(&p.object->shape))
             if (const std::optional<PlaneShape> in_world = placed_plane(*plane, p))
-                cut.planes.push_back(*in_world);
+                cut.planes.push_back({in_world->normal, in_world->distance});
         if (const Shape* shape = std::get_if<Shape>(&p.object->shape)) {
             if (shape->exact && !p.inverse && cut.exact.size() < kMaxExactParts) {
-                cut.exact.push_back({*shape->exact, glm::inverse(p.placed)});
+                cut.exact.push_back({*shape->exact, rows_of(glm::inverse(p.placed))});
                 cut.exact.back().shape.open = p.object->open;
                 continue;
             }
+            cut.inverted += p.inverse ? 1 : 0;
             facets.clear();
             shape->cut(segments, p.object->open, facets);
             add_finite(facets, p, cut.facets);

@@ -11,6 +11,7 @@ namespace ovc::pov {
 struct Look {
     Texture defaults;
     vec3 ambient_light{1};
+    vec3 irid_wavelengths{Finish{}.irid_wavelengths};
     bool before_3_7 = false; // the scene's version is below 3.7
     uint64_t max_triangles = kDefaultMostTriangles;
     std::optional<double> tolerance;       // as in ImportOptions

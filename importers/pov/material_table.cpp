@@ -145,6 +145,9 @@ void MaterialTable::fill(const PlacedInterior& interior, ovc::Material& material
             material.media.push_back(medium(media, interior.placed));
 }
 
+/// The largest share of light that a surface adds or lets through.
+static constexpr float kMaxShare = 1000;
+
 ovc::Material MaterialTable::made(const Texture& texture, const Color& color, const dmat4& placed,
                                   const PlacedInterior& interior) {
     ovc::Material material;
@@ -152,9 +155,11 @@ ovc::Material MaterialTable::made(const Texture& texture, const Color& color, co
     const bool varies = pigment.pattern && !texture.mix.pattern;
     Finish finish = texture.surface.finish;
     finish.ambient = texture.surface.ambient * look_.ambient_light + texture.surface.emission;
+    finish.irid_wavelengths = look_.irid_wavelengths;
     finish.filter_by_brightest = look_.before_3_7;
     if (!varies) {
-        const float share = std::clamp(opacity(color, look_.before_3_7), 0.0f, 1.0f);
+        // With a transmit above 1 it is below 0: scenes raise contrasts so.
+        const float share = std::clamp(opacity(color, look_.before_3_7), -kMaxShare, 1.0f);
         finish.diffuse *= share;
         finish.ambient *= share;
     }
@@ -167,13 +172,14 @@ ovc::Material MaterialTable::made(const Texture& texture, const Color& color, co
         material.texture = textures_.of_pigment(pigment, placed);
     } else {
         const vec3 through = refraction * color.through();
-        material.transmission = std::clamp(max_component(through), 0.0f, 1.0f);
+        material.transmission = std::clamp(max_component(through), 0.0f, kMaxShare);
         if (material.transmission > 0)
             material.filter = glm::clamp(through / material.transmission, 0.0f, 1.0f);
     }
     const double ior = texture.surface.ior.value_or(interior.interior ? interior.interior->ior : 1);
     material.ior = is_usable_ior(ior) ? ior : 1;
     material.finish = finish;
+    material.hollow = interior.hollow && material.transmission > 0;
     if (interior.interior)
         fill(interior, material);
     if (texture.normal.pattern.pattern)

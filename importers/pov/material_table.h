@@ -33,6 +33,11 @@ public:
     /// As TextureTable::set_has_uv.
     void set_has_uv(bool has_uv) { textures_.set_has_uv(has_uv); }
 
+    /// As TextureTable::set_to_uv.
+    void set_to_uv(std::vector<TextureStep> to_uv) { textures_.set_to_uv(std::move(to_uv)); }
+    /// As TextureTable::maps_uv.
+    bool maps_uv() const { return textures_.maps_uv(); }
+
     /// Returns whether a part of the material lies on texture coordinates.
     bool is_on_uv(uint32_t material) const { return on_uv_[material]; }
 

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "core/box.h"
+#include "core/region/round_shape.h"
 #include "core/scene.h"
-#include "importers/pov/shapes/exact_shape.h"
 #include "importers/pov/shapes/facets.h"
 #include "importers/pov/values/shared_function.h"
 #include "importers/pov/values/value.h"
@@ -20,8 +20,12 @@ struct Shape {
     double fixed = 0;
     double per_square = 0; // x segments^2
     double per_segment = 0;
-    std::optional<ExactShape> exact; // of round shapes that have formulas
-    std::optional<Box> box;          // bounds the shape; set only where cutting it takes long
+    std::optional<RoundShape> exact; // of round shapes that have formulas
+    /// Lead from the shape's space to its texture coordinates, as x and y. Empty: they are x and y
+    /// of the world, or the corners have some.
+    std::vector<TextureStep> to_uv;
+    bool knows_uv = true;   // false where POV-Ray's texture coordinates are not among these
+    std::optional<Box> box; // bounds the shape; set only where cutting it takes long
 
     double triangles(int segments) const {
         return fixed + segments * (per_segment + segments * per_square);

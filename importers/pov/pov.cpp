@@ -139,7 +139,9 @@ private:
             scene.radiosity = parse_radiosity(reader_);
         } else if (reader_.take("media")) {
             air_.push_back(parse_media(reader_));
-        } else if (token.is("rainbow") || token.is("photons")) {
+        } else if (reader_.take("rainbow")) {
+            add_rainbow(parse_rainbow(reader_), scene);
+        } else if (token.is("photons")) {
             reader_.next();
             reader_.omit(token.name->text, token.place, token.name->text + " is left out");
             skip_braces(reader_, token.name->text);
@@ -170,6 +172,15 @@ private:
         scene.faces->backwards = camera.direction.z < 0;
     }
 
+    /// As povray, which draws none without colors.
+    static void add_rainbow(Rainbow bow, Scene& scene) {
+        const double length = glm::length(bow.direction);
+        if (bow.colors.empty() || !(bow.width > 0 && bow.distance > 0 && bow.arc > 0 && length > 0))
+            return;
+        bow.direction /= length;
+        scene.background.rainbows.push_back(std::move(bow));
+    }
+
     void parse_background(Scene& scene) {
         reader_.expect('{', "background");
         const Color color = parse_color(reader_);
@@ -189,11 +200,11 @@ private:
             } else if (reader_.take("max_trace_level"))
                 trace_level_ = uint32_t(parse_int(reader_, 1, 256, "max_trace_level"));
             else if (reader_.take("noise_generator"))
-                reader_.noise = parse_int(reader_, 1, 3, "noise_generator") == 1
-                                    ? NoiseKind::Original
-                                    : NoiseKind::Corrected;
+                reader_.noise = NoiseKind(parse_int(reader_, 1, 3, "noise_generator"));
             else if (reader_.take("ambient_light"))
                 look_.ambient_light = parse_color(reader_).rgb;
+            else if (reader_.take("irid_wavelength"))
+                look_.irid_wavelengths = glm::max(parse_color(reader_).rgb, vec3(1e-6f));
             else if (const Token token = reader_.next();
                      token.kind == TokenKind::Name && token.name->is_keyword) {
                 if (token.is("radiosity")) {

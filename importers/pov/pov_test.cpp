@@ -417,7 +417,7 @@ TEST(PovWarnings, ComeOncePerKind) {
     std::vector<std::string> messages;
     const auto scene =
         parse_pov("sphere { 0, 1 pigment { tiling 9 } }\nsphere { 0, 1 pigment { tiling 8 } }\n"
-                  "sphere { 0, 1 normal { facets coords 1 } }",
+                  "sphere { 0, 1 normal { pavement } }",
                   "x.pov", gather(messages));
     EXPECT_TRUE(scene);
     ASSERT_EQ(messages.size(), 2u);
@@ -493,7 +493,7 @@ TEST(PovScene, InteriorsHaveMedia) {
         "#declare F = media { emission 0.1 intervals 2 samples 20 density { D translate x } };"
         "#declare S = sphere { 0, 1 pigment { rgbt 1 } interior { media { F } "
         "media { scattering { 5, 0.2 eccentricity 0.4 extinction 0 } absorption <1, 2, 3> } } };"
-        "light_source { 9, 1 media_interaction off } ";
+        "light_source { 9, 1 media_interaction off media_attenuation on } ";
     const Result<Scene> scene = parse(media + "object { S scale 3 hollow } media { absorption 2 }");
     ASSERT_TRUE(scene) << scene.error().message;
     ASSERT_EQ(scene->materials.at(0).media.size(), 2u);
@@ -505,8 +505,11 @@ TEST(PovScene, InteriorsHaveMedia) {
     EXPECT_EQ(fog.extinction, 0);
     EXPECT_EQ(fog.absorption, vec3(1, 2, 3));
     EXPECT_FALSE(scene->lights[0].lights_media);
+    EXPECT_TRUE(scene->lights[0].fades_in_air);
+    EXPECT_TRUE(scene->materials[0].hollow);
     EXPECT_EQ(scene->background.media.at(0).absorption, vec3(2));
     EXPECT_TRUE(parse(media + "object { S }")->materials.at(0).media.empty()) << "not hollow";
+    EXPECT_FALSE(parse(media + "object { S }")->materials.at(0).hollow);
     EXPECT_TRUE(scene->omissions.empty());
 }
 
@@ -537,17 +540,17 @@ TEST(PovScene, AreaLightsAreGrids) {
 
 TEST(PovWarnings, AreCountedOrErrors) {
     const std::string text = "sphere { 0, 1 pigment { tiling 9 } }\n"
-                             "sphere { 0, 1 pigment { tiling 8 } }\nrainbow { distance 9 }";
+                             "sphere { 0, 1 pigment { tiling 8 } }\nphotons { }";
     const Result<Scene> scene = parse(text);
     ASSERT_TRUE(scene);
     EXPECT_EQ(scene->omissions, (std::vector<Omission>{
                                     {"the pattern 'tiling' is drawn by its average color", 2},
-                                    {"rainbow is left out", 1},
+                                    {"photons is left out", 1},
                                 }));
     const Result<Scene> refused = parse_pov(text, "x.pov", {.strict = true});
     ASSERT_FALSE(refused);
     EXPECT_TRUE(refused.error().message.starts_with(
-        "x.pov:3:1: rainbow is left out, which --strict makes an error"))
+        "x.pov:3:1: photons is left out, which --strict makes an error"))
         << refused.error().message;
     EXPECT_TRUE(parse_pov("#warning \"so\" sphere { 0, 1 }", "x.pov", {.strict = true}));
 }

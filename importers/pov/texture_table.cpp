@@ -4,6 +4,7 @@
 #include "core/texture/pattern.h"
 #include "importers/file/picture_path.h"
 #include "importers/pov/material_table.h"
+#include "importers/pov/values/transform.h"
 
 #include <algorithm>
 #include <functional>
@@ -11,12 +12,7 @@
 namespace ovc::pov {
 
 static PlacedTexture placed_texture(uint32_t number, const dmat4& placed) {
-    const dmat4 back = glm::inverse(placed);
-    PlacedTexture texture{number, {}};
-    for (int row = 0; row < 3; ++row)
-        for (int column = 0; column < 4; ++column)
-            texture.to_texture[size_t(row)][column] = back[column][row];
-    return texture;
+    return {number, rows_of(glm::inverse(placed))};
 }
 
 /// Puts the transformation of a stop's pigment in front of its pattern: a texture's stops have no
@@ -131,7 +127,13 @@ uint32_t TextureTable::number(const Pigment& pigment) {
 PlacedTexture TextureTable::of_pigment(const Pigment& pigment, const dmat4& placed) {
     if (pigment.uv_mapping && has_uv_)
         return placed_texture(number(pigment), dmat4(1));
-    return of_pigments(*pigment.pattern, placed * pigment.placed);
+    if (!pigment.uv_mapping || to_uv_.empty())
+        return of_pigments(*pigment.pattern, placed * pigment.placed);
+    ovc::Texture wrapped = scene_.textures[number(*pigment.pattern)];
+    std::vector<TextureStep>& steps = wrapped.pattern.steps;
+    put_in_front(pigment.placed, wrapped.pattern);
+    steps.insert(steps.begin(), to_uv_.begin(), to_uv_.end());
+    return placed_texture(add(std::move(wrapped), /* is_mix= */ false), dmat4(1));
 }
 
 PlacedTexture TextureTable::of_density(const Pigment& density, const dmat4& placed) {

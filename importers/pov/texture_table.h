@@ -25,6 +25,11 @@ public:
     /// Says whether the surfaces of the pigments that follow have texture coordinates. Without,
     /// which is the beginning, uv_mapping is left out.
     void set_has_uv(bool has_uv) { has_uv_ = has_uv; }
+    /// Says how texture coordinates, as x and y, follow from the points of the surfaces that come;
+    /// empty, which is the beginning: they do not.
+    void set_to_uv(std::vector<TextureStep> to_uv) { to_uv_ = std::move(to_uv); }
+    /// Returns whether uv_mapping of a pigment has a meaning on the surfaces that come.
+    bool maps_uv() const { return has_uv_ || !to_uv_.empty(); }
     /// Returns whether a part of a texture that was added lies on texture coordinates.
     bool is_on_uv(uint32_t texture) const { return on_uv_[texture]; }
     /// Does the same for the color of a density.
@@ -45,6 +50,7 @@ private:
 
     Scene& scene_;
     bool has_uv_ = false;
+    std::vector<TextureStep> to_uv_;
     std::vector<bool> on_uv_;                                  // of each texture
     std::unordered_map<const PatternMap*, uint32_t> known_[2]; // without, with texture coordinates
     std::unordered_multimap<size_t, uint32_t> by_key_[2];      // of colors, of materials

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The fog that light goes through on its way to a ray's origin.
+// The fog and the rainbows that light goes through on its way to a ray's origin.
 #pragma once
 
 #include "core/ray.h"
@@ -17,5 +17,8 @@ struct ThroughFog {
 
 /// Returns what the fogs do on the ray's way up to `t`, or on an endless way for an infinite one.
 ThroughFog through_fog(std::span<const Fog> fogs, const Ray& ray, double t);
+
+/// Does the same for rainbows.
+ThroughFog through_rainbows(std::span<const Rainbow> bows, const Ray& ray, double t);
 
 } // namespace ovc

@@ -53,6 +53,40 @@ static vec3 density_at(std::span<const Texture> textures, const Medium& medium, 
     return glm::max(density, vec3(0));
 }
 
+/// Light beyond so many optical depths is not looked for.
+constexpr double kDeepest = 16;
+
+/// Returns the share of light that is lost on a unit of length where the density is 1.
+static vec3 lost_in(const Medium& medium) {
+    return medium.absorption + medium.extinction * medium.scattering;
+}
+
+/// Returns the t up to which even media let light through, at most the given one.
+static double end_of_sight(std::span<const Medium> media, const Ray& ray, double t) {
+    vec3 lost(0);
+    for (const Medium& medium : media) {
+        if (!medium.densities.empty())
+            return t;
+        lost += lost_in(medium);
+    }
+    const double least = double(-max_component(-lost)) * glm::length(ray.dir);
+    return least > 0 ? std::min(t, kDeepest / least) : t;
+}
+
+vec3 share_through_media(std::span<const Texture> textures, std::span<const Medium> media,
+                         const Ray& ray, double t) {
+    constexpr uint32_t kPlaces = 8;
+    const bool is_even = std::all_of(media.begin(), media.end(),
+                                     [](const Medium& medium) { return medium.densities.empty(); });
+    const uint32_t places = is_even ? 1 : kPlaces;
+    vec3 lost(0);
+    for (uint32_t i = 0; i < places; ++i)
+        for (const Medium& medium : media)
+            lost += density_at(textures, medium, ray.org + (i + 0.5) / places * t * ray.dir) *
+                    lost_in(medium);
+    return glm::exp(-float(t * glm::length(ray.dir) / places) * lost);
+}
+
 /// All media are looked at in the same places, as densely as the one that asks for most.
 ThroughMedia through_media(std::span<const Texture> textures, std::span<const Medium> media,
                            const Ray& ray, double t) {
@@ -60,7 +94,7 @@ ThroughMedia through_media(std::span<const Texture> textures, std::span<const Me
     uint32_t samples = 1;
     for (const Medium& medium : media)
         samples = std::clamp(medium.samples, samples, kMaxMediumSamples);
-    const double step = t / samples;
+    const double step = end_of_sight(media, ray, t) / samples;
     const float length = float(step * glm::length(ray.dir));
     for (uint32_t i = 0; i < samples && max_component(all.share) > 0; ++i) {
         const dvec3 at = ray.org + (i + 0.5) * step * ray.dir;
@@ -68,7 +102,7 @@ ThroughMedia through_media(std::span<const Texture> textures, std::span<const Me
         const size_t first = all.scattering.size();
         for (const Medium& medium : media) {
             const vec3 density = length * density_at(textures, medium, at);
-            lost += density * (medium.absorption + medium.extinction * medium.scattering);
+            lost += density * lost_in(medium);
             emitted += density * medium.emission;
             if (medium.scattering != vec3(0) && density != vec3(0))
                 all.scattering.push_back({at, density * medium.scattering, &medium});

@@ -33,6 +33,10 @@ struct ThroughMedia {
 ThroughMedia through_media(std::span<const Texture> textures, std::span<const Medium> media,
                            const Ray& ray, double t);
 
+/// Returns the share of light that comes through the media, which are looked at in a few places.
+vec3 share_through_media(std::span<const Texture> textures, std::span<const Medium> media,
+                         const Ray& ray, double t);
+
 /// Returns whether the scene has media anywhere.
 bool has_media(const Scene& scene);
 

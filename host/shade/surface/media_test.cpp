@@ -51,6 +51,33 @@ TEST(Media, AreAsDenseAsTheirTextures) {
     EXPECT_EQ(through_media({&half, 1}, {&medium, 1}, kRay, 1).added.y, 0);
 }
 
+TEST(Media, ThatAreEvenAreLookedAtWhereTheyCanBeSeen) {
+    Medium medium;
+    medium.scattering = vec3(0.2f);
+    const ThroughMedia through = through_media({}, {&medium, 1}, kRay, 1e7);
+    EXPECT_LT(through.share.x, 1e-6);
+    float sum = 0;
+    for (const ScatteringPlace& place : through.scattering)
+        sum += place.share.x;
+    EXPECT_NEAR(sum, 1, 0.05) << "all light has been scattered";
+}
+
+TEST(Media, KeepAShareOfLightInAFewPlacesToo) {
+    Texture rising; // from 0 to 1 along the ray
+    rising.pattern.kind = Pattern::Kind::Function;
+    rising.pattern.wave = Pattern::Wave::None;
+    rising.pattern.formula = {{{FormulaStep::Kind::Argument, 2}}, {1}};
+    rising.stops = {{0, {vec3(0)}}, {1, {vec3(1)}}};
+    Medium medium;
+    medium.absorption = vec3(0, 1, 2);
+    EXPECT_NEAR(share_through_media({}, {&medium, 1}, kRay, 1).y, std::exp(-2), 1e-6);
+    medium.densities = {{0, {dvec4(1, 0, 0, 0), dvec4(0, 1, 0, 0), dvec4(0, 0, 0.5, -1.5)}}};
+    const vec3 share = share_through_media({&rising, 1}, {&medium, 1}, kRay, 1);
+    EXPECT_EQ(share.x, 1);
+    EXPECT_NEAR(share.y, std::exp(-1), 1e-5);
+    EXPECT_NEAR(share.z, std::exp(-2), 1e-5);
+}
+
 /// Each phase scatters as much light in all as an even one.
 TEST(Media, PhasesKeepTheLight) {
     for (const Medium::Phase phase :

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The textures that the scene evaluates, with pbrt's mappings. Each mapping is a part of the
 // picture or pattern itself.
+#include "core/texture/noise/perlin.h"
 #include "importers/file/picture_path.h"
 #include "importers/file/text.h"
 #include "importers/pbrt/look/textures.h"
@@ -170,11 +171,114 @@ std::optional<uint32_t> Textures::make_checkerboard(const Definition& definition
     texture.on_uv = mapping->on_uv;
     texture.pattern.kind = Pattern::Kind::Checker;
     texture.pattern.steps = mapping->steps;
-    for (const auto& [name, otherwise] : {std::pair{"tex1", 1.0f}, {"tex2", 0.0f}}) {
-        const std::optional<TextureStop> one = stop(definition, name, vec3(otherwise));
+    return make_choice(definition, std::move(texture), {"tex1", "tex2"});
+}
+
+std::optional<uint32_t> Textures::make_choice(const Definition& definition, Texture texture,
+                                              const std::array<std::string_view, 2>& names) {
+    for (const std::string_view name : names) {
+        const vec3 otherwise(name == "tex1" || name == "inside" ? 1.0f : 0.0f);
+        const std::optional<TextureStop> one = stop(definition, name, otherwise);
         if (!one)
             return std::nullopt;
         texture.stops.push_back(*one);
+    }
+    return add_texture(scene_, std::move(texture));
+}
+
+std::optional<uint32_t> Textures::make_dots(const Definition& definition) {
+    const std::optional<Mapping> mapping = mapping_of(definition.request);
+    if (!mapping || mapping->projection != Projection::Planar)
+        return std::nullopt;
+    Texture texture;
+    texture.on_uv = mapping->on_uv;
+    texture.pattern.kind = Pattern::Kind::Dots;
+    texture.pattern.steps = mapping->steps;
+    return make_choice(definition, std::move(texture), {"outside", "inside"});
+}
+
+/// The colors of the corners are mixed along t, and the two that come of it along s.
+std::optional<uint32_t> Textures::make_bilerp(const Definition& definition) {
+    const std::optional<Mapping> mapping = mapping_of(definition.request);
+    if (!mapping || mapping->projection != Projection::Planar)
+        return std::nullopt;
+    const auto share_along = [&](uint32_t axis) {
+        Texture share;
+        share.on_uv = mapping->on_uv;
+        share.pattern.kind = Pattern::Kind::Function;
+        share.pattern.wave = Pattern::Wave::None;
+        share.pattern.steps = mapping->steps;
+        share.pattern.formula = {{{FormulaStep::Kind::Argument, axis}}, {1}};
+        share.stops = {{0, {vec3(0)}}, {1, {vec3(1)}}};
+        return TextureStop{0, {}, add_texture(scene_, std::move(share))};
+    };
+    const auto mixed = [&](TextureStop low, TextureStop high, TextureStop share) {
+        Texture mix;
+        mix.kind = TextureKind::Mix;
+        mix.stops = {low, high, share};
+        return TextureStop{0, {}, add_texture(scene_, std::move(mix))};
+    };
+    std::vector<TextureStop> corners;
+    for (const std::string_view name : {"v00", "v01", "v10", "v11"}) {
+        const std::optional<TextureStop> one =
+            stop(definition, name, vec3(name.back() == '1' ? 1.0f : 0.0f));
+        if (!one)
+            return std::nullopt;
+        corners.push_back(*one);
+    }
+    const TextureStop s = share_along(0), t = share_along(1);
+    return mixed(mixed(corners[0], corners[1], t), mixed(corners[2], corners[3], t), s).texture;
+}
+
+/// Returns the colors of marble as stops: Bezier's cubics through nine colors, each over four in a
+/// row, as straight pieces.
+/// Based on: Pharr, Jakob and Humphreys 2016, "Physically Based Rendering", section 10.6.6.
+static std::vector<TextureStop> marble_stops() {
+    constexpr vec3 kLight(0.58f, 0.58f, 0.6f);
+    constexpr std::array<vec3, 9> kColors = {kLight,
+                                             kLight,
+                                             kLight,
+                                             vec3(0.5f),
+                                             vec3(0.6f, 0.59f, 0.58f),
+                                             kLight,
+                                             kLight,
+                                             vec3(0.2f, 0.2f, 0.33f),
+                                             kLight};
+    constexpr float kBrighter = 1.5f;
+    constexpr size_t kCubics = kColors.size() - 3, kPieces = 8;
+    std::vector<TextureStop> stops;
+    for (size_t cubic = 0; cubic < kCubics; ++cubic)
+        for (size_t piece = 0; piece <= kPieces; ++piece) {
+            const float t = float(piece) / float(kPieces), s = 1 - t;
+            const vec3 color = s * s * s * kColors[cubic] + 3 * s * s * t * kColors[cubic + 1] +
+                               3 * s * t * t * kColors[cubic + 2] + t * t * t * kColors[cubic + 3];
+            stops.push_back({(double(cubic) + double(t)) / double(kCubics), {kBrighter * color}});
+        }
+    return stops;
+}
+
+uint32_t Textures::make_noise(const TextureRequest& request) {
+    using P = PerlinParameter;
+    const Parameters& p = request.parameters;
+    const std::string& type = request.type;
+    Texture texture;
+    Pattern& pattern = texture.pattern;
+    pattern.kind = Pattern::Kind::Perlin;
+    pattern.wave = Pattern::Wave::None;
+    pattern.steps = {to_own_space(request.to_world)};
+    texture.stops = {{0, {vec3(0)}}, {1, {vec3(1)}}};
+    pattern.parameters[P::kForm] = type == "wrinkled" ? P::Turbulence
+                                   : type == "windy"  ? P::Windy
+                                   : type == "marble" ? P::Marble
+                                                      : P::Sum;
+    pattern.parameters[P::kOctaves] = std::clamp(p.number("octaves", 8), 0.0, kMaxNoiseOctaves);
+    pattern.parameters[P::kRoughness] = p.number("roughness", 0.5);
+    if (type == "marble") {
+        const double scale = p.number("scale", 1);
+        pattern.wave = Pattern::Wave::Ramp;
+        pattern.parameters[P::kVariation] = p.number("variation", 0.2);
+        pattern.steps.push_back(affine({scale, 0, 0, 0}, {0, scale, 0, 0}, {0, 0, scale, 0}));
+        texture.stops = marble_stops();
     }
     return add_texture(scene_, std::move(texture));
 }
@@ -192,6 +296,12 @@ std::optional<uint32_t> Textures::make(size_t number) {
         definition.made = make_image(definition.request);
     else if (type == "checkerboard")
         definition.made = make_checkerboard(definition);
+    else if (type == "dots")
+        definition.made = make_dots(definition);
+    else if (type == "bilerp")
+        definition.made = make_bilerp(definition);
+    else if (type == "fbm" || type == "wrinkled" || type == "windy" || type == "marble")
+        definition.made = make_noise(definition.request);
     else if (type == "scale" && (p.find("tex") || p.find("scale"))) // v4's names
         definition.made = make_combined(definition, TextureKind::Product, {"tex", "scale"});
     else if (type == "scale")

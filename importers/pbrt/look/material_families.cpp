@@ -370,11 +370,10 @@ constexpr Family kFamilies[] = {{"matte", make_matte},
 /// Adds what tilts normals: heights in the units of the world, or v4's pictures of normals.
 static void take_relief(const MaterialContext& c, Material& m) {
     for (const std::string_view name : {"bumpmap", "displacement"})
-        if (const auto texture = c.texture(name); texture && c.textures.is_on_uv(*texture))
-            m.normal_map = NormalMap{NormalMap::Kind::Height, *texture};
-        else if (texture)
-            c.diagnostics.approximate("solid bumps", c.place,
-                                      "bumps that do not lie on texture coordinates are left out");
+        if (const auto texture = c.texture(name))
+            m.normal_map = NormalMap{c.textures.is_on_uv(*texture) ? NormalMap::Kind::Height
+                                                                   : NormalMap::Kind::Space,
+                                     *texture};
     const std::string normals = c.p.text("normalmap");
     if (normals.empty())
         return;

@@ -35,7 +35,8 @@ static std::string key_of(const Material& m) {
 bool Materials::is_on_uv(const Material& material) const {
     const MaterialMaps maps = material.maps.value_or(MaterialMaps{});
     return (material.texture && textures_.is_on_uv(material.texture->texture)) ||
-           (maps.reflection != kNone && textures_.is_on_uv(maps.reflection)) || material.normal_map;
+           (maps.reflection != kNone && textures_.is_on_uv(maps.reflection)) ||
+           (material.normal_map && textures_.is_on_uv(material.normal_map->texture));
 }
 
 uint32_t Materials::add(Material material, uint32_t holes) {

@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace ovc::pbrt {
 
 static bool is_plain(const std::string& type) {
@@ -19,7 +21,10 @@ static bool is_plain(const std::string& type) {
 static bool is_evaluated(const TextureRequest& request) {
     if (request.type == "imagemap")
         return !request.parameters.text("filename").empty();
-    return request.type == "checkerboard" || is_plain(request.type);
+    static constexpr std::string_view kPatterns[] = {"bilerp", "checkerboard", "dots",    "fbm",
+                                                     "marble", "windy",        "wrinkled"};
+    return is_plain(request.type) ||
+           std::ranges::find(kPatterns, request.type) != std::end(kPatterns);
 }
 
 void Textures::define(const std::string& name, TextureRequest request) {

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Textures keeps pbrt's textures by their names, and makes those of the scene that materials use:
-// pictures, products, mixes and checkerboards. Others are replaced by their mean.
+// pictures, products, mixes, blocks and noise. Others are replaced by their mean.
 #pragma once
 
 #include "importers/pbrt/interpret/tokens.h"
 #include "importers/pbrt/interpret/transform.h"
 #include "importers/pbrt/look/spectrum.h"
 
+#include <array>
 #include <map>
 #include <optional>
 #include <unordered_map>
@@ -73,6 +74,12 @@ private:
     std::optional<uint32_t> make_checkerboard(const Definition& definition);
     std::optional<uint32_t> make_combined(const Definition& definition, TextureKind kind,
                                           std::initializer_list<std::string_view> names);
+    /// Adds a texture of one of two parameters: that of `inside` where the pattern is 1.
+    std::optional<uint32_t> make_choice(const Definition& definition, Texture texture,
+                                        const std::array<std::string_view, 2>& names);
+    std::optional<uint32_t> make_dots(const Definition& definition);
+    std::optional<uint32_t> make_bilerp(const Definition& definition);
+    uint32_t make_noise(const TextureRequest& request);
     std::optional<TextureStop> stop(const Definition& definition, std::string_view name,
                                     const vec3& otherwise);
 

@@ -176,6 +176,9 @@ Camera camera_of(const CameraValue& c) {
     camera.by_faces = c.faces != nullptr;
     if (c.blur_samples > 0 && c.aperture > 0 && !c.faces)
         camera.lens = focal_blur_of(c);
+    // povray's rays do not see a surface that they begin on.
+    constexpr double kNearest = 1e-6;
+    camera.nearest = kNearest;
     camera.up = glm::length(c.sky) > 0 ? c.sky : c.up;
     const double depth = glm::length(c.direction);
     camera.target = c.location + c.direction * (c.distance && depth > 0 ? *c.distance / depth : 1);

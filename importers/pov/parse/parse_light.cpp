@@ -108,10 +108,9 @@ bool parse_other_part(Reader& reader, Words& words, LightSource& source) {
         source.light.lights_media = parse_flag(reader);
     else if (reader.take("jitter"))
         parse_flag(reader);
-    else if (reader.take("media_attenuation")) {
-        if (parse_flag(reader))
-            reader.omit("media_attenuation", token.place, "media_attenuation is left out");
-    } else if (reader.take("adaptive"))
+    else if (reader.take("media_attenuation"))
+        source.light.fades_in_air = parse_flag(reader);
+    else if (reader.take("adaptive"))
         parse_float(reader);
     else
         return false;

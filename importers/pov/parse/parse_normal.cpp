@@ -22,6 +22,8 @@ static Bump::Kind bump_of(const Token& pattern) {
         return Bump::Kind::Ripples;
     if (pattern.is("waves"))
         return Bump::Kind::Waves;
+    if (pattern.is("facets"))
+        return Bump::Kind::Facets;
     if (pattern.is("quilted"))
         return Bump::Kind::Quilted;
     return pattern.is("wrinkles") ? Bump::Kind::Wrinkles : Bump::Kind::Height;

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "importers/pov/parse/parse_sky.h"
 
+#include "importers/pov/parse/pattern_map.h"
 #include "importers/pov/parse/texture.h"
 #include "importers/pov/values/transform.h"
 #include "importers/pov/words/block.h"
+
+#include <algorithm>
 
 namespace ovc::pov {
 
@@ -64,6 +67,42 @@ Fog parse_fog(Reader& reader) {
     const double length = glm::length(fog.up);
     fog.up = length > 0 ? fog.up / length : dvec3(0, 1, 0);
     return fog;
+}
+
+Rainbow parse_rainbow(Reader& reader) {
+    Rainbow bow;
+    reader.expect('{', "rainbow");
+    while (!reader.take('}')) {
+        if (const auto named_bow = take_named_if<Rainbow>(reader))
+            bow = *named_bow;
+        else if (reader.take("direction"))
+            bow.direction = parse_vector(reader);
+        else if (reader.take("up"))
+            bow.up = parse_vector(reader);
+        else if (reader.take("angle"))
+            bow.angle = parse_float(reader);
+        else if (reader.take("width"))
+            bow.width = parse_float(reader);
+        else if (reader.take("distance"))
+            bow.distance = parse_float(reader);
+        else if (reader.take("arc_angle"))
+            bow.arc = parse_float(reader);
+        else if (reader.take("falloff_angle"))
+            bow.full_arc = parse_float(reader);
+        else if (reader.take("jitter"))
+            bow.jitter = parse_float(reader);
+        else if (reader.take("color_map") || reader.take("colour_map")) {
+            bow.colors.clear();
+            for (const MapStop& stop : parse_map(reader, MapOf::Pigments).stops)
+                bow.colors.push_back({stop.at, stop.pigment.color, kNoTexture});
+            std::ranges::stable_sort(bow.colors, {}, &TextureStop::at);
+        } else if (const auto m = take_transform(reader)) {
+            bow.direction = dvec3(*m * dvec4(bow.direction, 0));
+            bow.up = dvec3(*m * dvec4(bow.up, 0));
+        } else if (!reader.take(','))
+            reader.fail_here("'}' or a part of rainbow");
+    }
+    return bow;
 }
 
 } // namespace ovc::pov

@@ -87,11 +87,6 @@ Value parse_layers(Reader& reader) {
 }
 
 using ParseValue = Value (*)(Reader&);
-Value parse_opaque(Reader& reader) {
-    skip_braces(reader, "a block");
-    return Opaque{"a block"};
-}
-
 const std::unordered_map<std::string_view, ParseValue> kKinds = {
     {"array", parse_array},
     {"texture", parse_layers},
@@ -122,7 +117,7 @@ const std::unordered_map<std::string_view, ParseValue> kKinds = {
     {"density_map", [](Reader& r) -> Value { return parse_map(r, MapOf::Pigments); }},
     {"media", [](Reader& r) -> Value { return parse_media(r); }},
     {"fog", [](Reader& r) -> Value { return parse_fog(r); }},
-    {"rainbow", parse_opaque},
+    {"rainbow", [](Reader& r) -> Value { return parse_rainbow(r); }},
     {"sky_sphere", [](Reader& r) -> Value { return parse_sky_sphere(r); }}};
 
 /// Returns the number of items, with those of arrays in the array.
@@ -213,7 +208,7 @@ std::string kind_of(const Value& value) {
         "nothing",  "a number",    "a text",      "an object",  "a texture",   "a pigment",
         "a normal", "a finish",    "an interior", "a material", "a color map", "a sky",
         "a fog",    "a transform", "an array",    "a macro",    "a function",  "a spline",
-        "a camera", "a file",      "a media",     "a block"};
+        "a camera", "a file",      "a media",     "a rainbow"};
     static_assert(std::size(kKindNames) == std::variant_size_v<Value::variant>);
     return kKindNames[value.index()];
 }

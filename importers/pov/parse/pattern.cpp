@@ -4,11 +4,14 @@
 #include "core/texture/fractal.h"
 #include "core/texture/pattern.h"
 #include "importers/file/text.h"
+#include "importers/pov/parse/parse_object.h"
 #include "importers/pov/parse/texture.h"
 #include "importers/pov/pictures/density.h"
 #include "importers/pov/pictures/image_map.h"
 #include "importers/pov/texture_table.h"
+#include "importers/pov/values/builtin_object.h"
 #include "importers/pov/values/function.h"
+#include "importers/pov/values/transform.h"
 #include "importers/pov/words/block.h"
 
 #include <fmt/format.h>
@@ -41,6 +44,7 @@ const std::unordered_map<std::string_view, KindAndWave> kPatterns = {
     {"cylindrical", {Kind::Cylindrical}},
     {"density_file", {Kind::Density}},
     {"dents", {Kind::Dents}},
+    {"facets", {Kind::Crackle}},
     {"function", {Kind::Function}},
     {"gradient", {Kind::Gradient}},
     {"granite", {Kind::Granite}},
@@ -66,8 +70,9 @@ const std::unordered_map<std::string_view, KindAndWave> kPatterns = {
     {"wrinkles", {Kind::Wrinkles}}};
 
 const std::unordered_map<std::string_view, Kind> kLists = {
-    {"brick", Kind::Brick},     {"checker", Kind::Checker}, {"cubic", Kind::Cubic},
-    {"hexagon", Kind::Hexagon}, {"square", Kind::Square},   {"triangular", Kind::Triangular}};
+    {"brick", Kind::Brick},          {"checker", Kind::Checker}, {"cubic", Kind::Cubic},
+    {"hexagon", Kind::Hexagon},      {"object", Kind::Object},   {"square", Kind::Square},
+    {"triangular", Kind::Triangular}};
 
 const std::unordered_map<std::string_view, Wave> kWaves = {
     {"ramp_wave", Wave::Ramp},   {"triangle_wave", Wave::Triangular},
@@ -82,8 +87,7 @@ bool is_one_of(const Token& token, const std::string_view (&words)[N]) {
 
 /// Returns whether the word is a pattern that Overcast draws by its average color.
 bool is_other_pattern(const Token& token) {
-    static constexpr std::string_view kWords[] = {"facets", "object", "pavement", "potential",
-                                                  "tiling"};
+    static constexpr std::string_view kWords[] = {"pavement", "potential", "tiling"};
     return is_one_of(token, kWords);
 }
 
@@ -150,11 +154,7 @@ void PatternParts::refuse(const Token& token) {
 }
 
 void PatternParts::add_step(TextureStep step) {
-    TextureStep back;
-    const dmat4 inverse = glm::inverse(pigment_.placed);
-    for (int row = 0; row < 3; ++row)
-        for (int column = 0; column < 4; ++column)
-            back.rows[size_t(row)][column] = inverse[column][row];
+    const TextureStep back{TextureStep::Kind::Affine, rows_of(glm::inverse(pigment_.placed))};
     pattern_.steps.insert(pattern_.steps.begin(), {step, back});
     pigment_.placed = dmat4(1);
 }
@@ -179,16 +179,15 @@ bool PatternParts::take_pattern(const Token& token) {
     if (is_other_pattern(token)) {
         reader_.next();
         refuse(token);
-        if (token.is("object"))
-            parse_object_list();
-        else
-            skip_arguments(reader_);
+        skip_arguments(reader_);
         return true;
     }
     const auto found = kPatterns.find(token.name->text);
     if (found == kPatterns.end())
         return false;
     reader_.next();
+    if (token.is("facets") && of_ != MapOf::Normals)
+        reader_.fail(token.place, "found facets, expected a pattern that is not for normals alone");
     choose(found->second.kind, found->second.wave);
     if (stops_.empty() && token.is("bozo"))
         stops_ = default_stops(&token, Kind::Bozo);
@@ -206,6 +205,8 @@ void PatternParts::parse_arguments(const Token& token) {
         pattern_.parameters[0] = parse_float(reader_);
     else if (token.is("crackle"))
         pattern_.parameters = {-1, 1, 0, 2, 0, 0};
+    else if (token.is("facets"))
+        parse_facets();
     else if (token.is("quilted"))
         pattern_.parameters = {1, 1};
     else if (token.is("function"))
@@ -220,6 +221,23 @@ void PatternParts::parse_arguments(const Token& token) {
         take_density_file(token);
     else if (pattern_.kind == Kind::Fractal)
         parse_fractal(token);
+}
+
+/// Reads `coords X`, `size X` and `metric X`.
+void PatternParts::parse_facets() {
+    using P = FacetParameter;
+    pattern_.parameters = {};
+    pattern_.parameters[P::kMetric] = 2;
+    for (;;) {
+        const bool is_coords = reader_.take("coords");
+        if (is_coords || reader_.take("size")) {
+            pattern_.parameters[P::kCoords] = pattern_.parameters[P::kSize] = 0;
+            pattern_.parameters[is_coords ? P::kCoords : P::kSize] = parse_float(reader_);
+        } else if (reader_.take("metric"))
+            pattern_.parameters[P::kMetric] = std::max(1e-3, parse_float(reader_));
+        else
+            return;
+    }
 }
 
 void PatternParts::take_function(const Token& token, const Function& function) {
@@ -381,13 +399,16 @@ bool PatternParts::take_own_part() {
     return true;
 }
 
-/// Reads `{ OBJECT ENTRY, ENTRY }`, whose entries are textures, pigments, colors or normals.
+/// Reads `{ OBJECT ENTRY, ENTRY }`, whose entries are textures, pigments, colors or normals: that
+/// of the outside and that of the inside.
 void PatternParts::parse_object_list() {
     reader_.expect('{', "object");
-    if (!take_named_if<ObjectPtr>(reader_)) {
-        reader_.next(); // such as `sphere`
-        skip_braces(reader_, "the object of a pattern");
-    }
+    const std::optional<ObjectPtr> named_object = take_named_if<ObjectPtr>(reader_);
+    if (!named_object && !starts_object(reader_.peek()))
+        reader_.fail_here("an object");
+    const ObjectPtr object = named_object ? *named_object : parse_object(reader_);
+    pattern_.region = region_of(reader_, object);
+    reader_.grow(pattern_.region.triangles.corners.size() * sizeof(dvec3));
     reader_.take_comma();
     parse_list();
     reader_.expect('}', "the entries of a pattern of an object");
@@ -403,7 +424,9 @@ bool PatternParts::take_list(const Token& token) {
     pattern_.steps.clear();
     if (found->second == Kind::Brick)
         pattern_.parameters = {8, 3, 4.5, 0.5};
-    if (of_ != MapOf::Normals || reader_.peek().is("normal"))
+    if (found->second == Kind::Object)
+        parse_object_list();
+    else if (of_ != MapOf::Normals || reader_.peek().is("normal"))
         parse_list();
     return true;
 }
@@ -448,8 +471,7 @@ bool PatternParts::take_number(const Token& token) {
     else if (reader_.take("agate_turb"))
         agate_turb_ = parse_float(reader_);
     else if (reader_.take("noise_generator"))
-        pattern_.noise = parse_int(reader_, 1, 3, "noise_generator") == 1 ? NoiseKind::Original
-                                                                          : NoiseKind::Corrected;
+        pattern_.noise = NoiseKind(parse_int(reader_, 1, 3, "noise_generator"));
     else if (reader_.take("brick_size")) {
         const dvec3 size = parse_vector(reader_);
         for (int i = 0; i < 3; ++i)

@@ -113,6 +113,54 @@ TEST(PovPattern, HasTheColorsThatPovrayPrints) {
     }
 }
 
+/// As inside() of povray 3.7.0.10 says.
+TEST(PovPattern, TellsInsideFromOutside) {
+    const Scene scene = textured_scene(
+        "#declare O = difference { sphere { 0, 1 } box { 0, 2 } }\n"
+        "box { -1, 1 pigment { object { union { object { O } plane { y, -0.8 } } rgb x rgb z } "
+        "scale 2 } }");
+    EXPECT_TRUE(scene.omissions.empty());
+    EXPECT_EQ(box_color(scene, {-1, 1, 1}).rgb, vec3(0, 0, 1));
+    EXPECT_EQ(box_color(scene, {1, 1, 1}).rgb, vec3(1, 0, 0)) << "within the box";
+    EXPECT_EQ(box_color(scene, {-1, -1.7, 1}).rgb, vec3(0, 0, 1)) << "below the plane";
+    EXPECT_EQ(box_color(scene, {-1.9, 1, 1}).rgb, vec3(1, 0, 0));
+    const Scene everted =
+        textured_scene("box { -1, 1 pigment { object { box { 0, 1 inverse } rgb x rgb z } } }");
+    EXPECT_EQ(box_color(everted, dvec3(0.5)).rgb, vec3(1, 0, 0));
+    EXPECT_EQ(box_color(everted, dvec3(-0.5)).rgb, vec3(0, 0, 1));
+}
+
+/// The texture coordinates are those that povray 3.7.0.10 draws; see core/texture/warp.cpp.
+TEST(PovPattern, LiesOnTextureCoordinatesOfShapes) {
+    const auto uv_at = [](const std::string& shape, const dvec3& at) {
+        const auto value = [&](const char* axis) {
+            const Scene scene =
+                textured_scene(shape + " pigment { uv_mapping function { " + axis +
+                               " } color_map { [0 rgb 0] [1 rgb 1] } } scale 2 translate 3*x }");
+            EXPECT_TRUE(scene.omissions.empty());
+            return double(box_color(scene, 2.0 * at + dvec3(3, 0, 0)).rgb.x);
+        };
+        return dvec2(value("x"), value("y"));
+    };
+    const auto expect_uv = [](const dvec2& found, const dvec2& expected) {
+        EXPECT_LT(glm::length(found - expected), 1e-3) << found.x << " " << found.y;
+    };
+    expect_uv(uv_at("sphere { y, 1", {0.222, 0.556, -0.868}), {0.7899, 0.3534});
+    expect_uv(uv_at("torus { 1, 0.4", {0.667, 0.345, 1}), {0.3436, 0.6658});
+    const struct {
+        dvec3 at;
+        dvec2 uv;
+    } kSides[] = {{{-0.75, 0.75, -1}, {0.9687, 0.625}}, {{0.75, 0.75, 1}, {0.4688, 0.625}},
+                  {{1, 0.75, -0.75}, {0.7187, 0.625}},  {{-1, 0.75, 0.75}, {0.2188, 0.625}},
+                  {{-0.75, 1, 0.75}, {0.2813, 0.7083}}, {{0.75, -1, 0.75}, {0.4688, 0.2917}}};
+    for (const auto& side : kSides)
+        expect_uv(uv_at("box { <-2, -1, -1>, <2, 1, 1>", side.at * dvec3(2, 1, 1)), side.uv);
+    expect_uv(uv_at("sor { 4, <0.5, -1.5>, <0.6, -1>, <0.9, 1>, <1, 1.5>", {0, 0.222, -0.8}),
+              {0.75, 0.611});
+    // Others have those of the world.
+    expect_uv(uv_at("cylinder { -y, y, 1", {-1.4, 0.3, 0}), {0.2, 0.6});
+}
+
 TEST(PovPattern, MovesWithItsObject) {
     const std::string map = " color_map { [0 rgb 0] [1 rgb 1] } ";
     const Scene still = textured_box("pigment { gradient x" + map + "}");
@@ -175,6 +223,13 @@ TEST(PovTexture, TilesBeginWithTheSecond) {
     EXPECT_EQ(scene.materials.at(mix.stops[1].texture).color, vec3(1, 0, 0));
 }
 
+/// As povray 3.7.0.10 draws it: what is behind is brighter, and the surface's own light is missing.
+TEST(PovTexture, MayLetMoreLightThroughThanThereIs) {
+    const Scene scene = textured_box("pigment { rgb 0.5 transmit 3 } finish { ambient 1 }");
+    EXPECT_EQ(box_material(scene).transmission, 3);
+    EXPECT_EQ(box_material(scene).finish->ambient, vec3(-2));
+}
+
 TEST(PovNormal, TiltsNormals) {
     const Scene scene = textured_box("pigment { rgb 1 } normal { granite 0.3 accuracy 0.1 scale 2 "
                                      "turbulence 0.2 } scale 3");
@@ -191,6 +246,29 @@ TEST(PovNormal, TiltsNormals) {
                                        "box { -1, 1 texture { normal { N bump_size 0.7 } } }");
     EXPECT_EQ(box_material(named).bump->kind, Bump::Kind::Noise);
     EXPECT_EQ(box_material(named).bump->amount, 0.7);
+    EXPECT_TRUE(scene.omissions.empty());
+}
+
+TEST(PovNormal, HasFacets) {
+    const Scene scene = textured_box("normal { facets size 0.3 metric 3 }");
+    ASSERT_TRUE(box_material(scene).bump);
+    EXPECT_EQ(box_material(scene).bump->kind, Bump::Kind::Facets);
+    const Pattern& pattern = scene.textures.at(box_material(scene).bump->pattern.texture).pattern;
+    EXPECT_EQ(pattern.parameters[FacetParameter::kSize], 0.3);
+    EXPECT_EQ(pattern.parameters[FacetParameter::kMetric], 3);
+    EXPECT_TRUE(scene.omissions.empty());
+    EXPECT_FALSE(parse_pov("box { 0, 1 pigment { facets size 1 } }", "x.pov", {}));
+}
+
+TEST(PovTexture, FinishesHaveFilms) {
+    const Scene scene =
+        textured_scene("global_settings { irid_wavelength rgb <0.6, 0.5, 0.4> }\n"
+                       "box { -1, 1 finish { irid { 0.3 thickness 0.5 turbulence 0.7 } } }");
+    const Finish& finish = *box_material(scene).finish;
+    EXPECT_EQ(finish.irid, 0.3f);
+    EXPECT_EQ(finish.irid_thickness, 0.5f);
+    EXPECT_EQ(finish.irid_turbulence, 0.7f);
+    EXPECT_EQ(finish.irid_wavelengths, vec3(0.6f, 0.5f, 0.4f));
     EXPECT_TRUE(scene.omissions.empty());
 }
 
@@ -251,6 +329,24 @@ TEST(PovSky, HasFog) {
     EXPECT_EQ(scene.background.fogs[0].distance, 5);
     EXPECT_EQ(scene.background.fogs[0].color.transmit, 0.5f);
     EXPECT_EQ(scene.background.fogs[1], (Fog{{vec3(1)}, 3, 2, 1, {0, 0, 1}}));
+}
+
+TEST(PovSky, HasRainbows) {
+    const Scene scene = textured_scene(
+        "#declare R = rainbow { direction <0, 0, 2> angle 42 width 5 distance 9 jitter 0.1 "
+        "arc_angle 120 falloff_angle 30 up x color_map { [0.6 rgbt <1, 0, 0, 0.5>] [0.2 rgb 1] } "
+        "}\n"
+        "rainbow { R } rainbow { angle 3 width 2 } box { 0, 1 }");
+    EXPECT_TRUE(scene.omissions.empty());
+    ASSERT_EQ(scene.background.rainbows.size(), 1u) << "without colors there is none";
+    const Rainbow& bow = scene.background.rainbows[0];
+    EXPECT_EQ(bow.direction, dvec3(0, 0, 1));
+    ASSERT_EQ(bow.colors.size(), 2u);
+    EXPECT_EQ(bow.colors[0].at, 0.2);
+    EXPECT_EQ(bow.colors[1].color.transmit, 0.5f);
+    EXPECT_EQ(bow.arc, 120);
+    EXPECT_EQ(bow.full_arc, 30);
+    EXPECT_EQ(bow.up, dvec3(1, 0, 0));
 }
 
 TEST(PovSky, HasPatterns) {

@@ -57,6 +57,19 @@ void parse_reflection(Reader& reader, Surface& surface) {
     }
 }
 
+/// Reads the block of irid.
+void parse_irid(Reader& reader, Finish& finish) {
+    reader.expect('{', "irid");
+    while (!reader.take('}')) {
+        if (reader.take("thickness"))
+            finish.irid_thickness = float(parse_float(reader));
+        else if (reader.take("turbulence"))
+            finish.irid_turbulence = float(parse_float(reader));
+        else if (!reader.take(','))
+            finish.irid = float(parse_float(reader));
+    }
+}
+
 bool parse_finish_part(Reader& reader, Surface& surface) {
     Finish& finish = surface.finish;
     if (reader.take("ambient"))
@@ -83,6 +96,8 @@ bool parse_finish_part(Reader& reader, Surface& surface) {
         finish.metallic = starts_number(reader, reader.peek()) ? float(parse_float(reader)) : 1;
     else if (reader.take("reflection"))
         parse_reflection(reader, surface);
+    else if (reader.take("irid"))
+        parse_irid(reader, finish);
     else if (reader.take("conserve_energy"))
         finish.conserve_energy = parse_flag(reader);
     else if (reader.take("ior"))
@@ -180,7 +195,7 @@ Surface parse_finish(Reader& reader, const Surface& base) {
         if (const auto named_surface = take_named_if<Surface>(reader))
             surface = *named_surface;
         else if (!parse_finish_part(reader, surface)) {
-            const Token token = reader.next(); // irid and the like
+            const Token token = reader.next(); // subsurface and the like
             if (!is_word(token))
                 reader.fail(token.place,
                             fmt::format("found {}, expected a part of a finish", found(token)));
@@ -257,8 +272,8 @@ static Texture mix_of(PatternPtr map) {
     return all;
 }
 
-/// Reads `tiles { texture { … } tile2 texture { … } }`, a checker of two textures in old scenes. The
-/// second has the cubes that the first of a `checker` has.
+/// Reads `tiles { texture { … } tile2 texture { … } }`, a checker of two textures in old scenes,
+/// whose second texture fills the cells that a checker's first one does.
 static Texture parse_tiles(Reader& reader) {
     reader.expect('{', "tiles");
     auto map = std::make_shared<PatternMap>();

@@ -196,8 +196,12 @@ TEST(PovUvMapping, MeshesKeepCoordinatesForPatternsOnThem) {
     EXPECT_TRUE(read_beside_picture(mesh + "pigment { " + map + " } }").scene.meshes[0].uv.empty());
     const ReadPov sphere =
         read_beside_picture("sphere { 0, 1 pigment { uv_mapping " + map + " } }");
-    EXPECT_EQ(sphere.warnings.size(), 1u);
-    EXPECT_FALSE(sphere.scene.textures[sphere.material().texture.value().texture].on_uv);
+    EXPECT_TRUE(sphere.warnings.empty());
+    EXPECT_FALSE(sphere.scene.textures[sphere.material().texture.value().texture].on_uv)
+        << "they follow from the place";
+    const ReadPov lathe = read_beside_picture(
+        "lathe { linear_spline 2, <1, 0>, <1, 1> pigment { uv_mapping " + map + " } }");
+    EXPECT_EQ(lathe.warnings.size(), 1u);
 }
 
 } // namespace

@@ -55,6 +55,11 @@ Container parse_container(Reader& reader);
 // shape_patch.cpp
 Shape parse_bicubic_patch(Reader& reader);
 
+/// Returns the step of this kind that wraps a plane around the axis of y.
+inline TextureStep wrapped_around_y(TextureStep::Kind kind, double major_radius = 0) {
+    return {kind, {dvec4(2, 0, major_radius, 0), dvec4(0), dvec4(0)}};
+}
+
 /// Reads how many points a shape has, from `least` to 10 million, which bounds the memory it takes.
 int parse_count(Reader& reader, int least);
 

@@ -68,7 +68,15 @@ Shape parse_box(Reader& reader) {
             }
             facets.add_quad(corners[0], corners[1], corners[2], corners[3]);
         }
-    return fixed(std::move(facets));
+    Shape shape = fixed(std::move(facets));
+    TextureStep to_unit;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double half = std::max(0.5 * (hi[axis] - lo[axis]), 1e-300);
+        to_unit.rows[size_t(axis)] /= half;
+        to_unit.rows[size_t(axis)].w = -0.5 * (lo[axis] + hi[axis]) / half;
+    }
+    shape.to_uv = {to_unit, {TextureStep::Kind::BoxNet}};
+    return shape;
 }
 
 Shape parse_triangle(Reader& reader) {

@@ -27,7 +27,7 @@ struct Bounds {
 };
 
 Bounds bounds_of(const Container& container) {
-    if (const std::optional<ExactShape>& ball = container.shape.exact)
+    if (const std::optional<RoundShape>& ball = container.shape.exact)
         return {{ball->base - ball->radius, ball->base + ball->radius}, true};
     return {container.box, false};
 }
@@ -129,6 +129,7 @@ Shape parse_parametric(Reader& reader) {
             break;
     }
     Shape shape;
+    shape.knows_uv = false;
     shape.per_square = 2;
     shape.box = surface.bounds.box;
     shape.cut = [surface = std::move(surface)](int segments, bool, Facets& out) {

@@ -42,6 +42,7 @@ Shape parse_bicubic_patch(Reader& reader) {
         reader.take_comma();
     }
     Shape shape;
+    shape.knows_uv = false;
     shape.per_square = 2 / 16.0;
     shape.cut = [points](int segments, bool, Facets& out) {
         const int steps = segments / 4;

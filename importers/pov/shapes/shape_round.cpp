@@ -67,7 +67,7 @@ Shape frustum(Reader& reader, const dvec3& base, double base_radius, const dvec3
             out.add(at(0, 0), at(i + 1, 0), at(i, 0));
         }
     });
-    shape.exact = ExactShape{base, base_radius, cap, cap_radius, /* is_ball= */ false};
+    shape.exact = RoundShape{base, base_radius, cap, cap_radius, /* is_ball= */ false};
     return shape;
 }
 
@@ -96,7 +96,11 @@ Shape parse_sphere(Reader& reader) {
             },
             out);
     });
-    shape.exact = ExactShape{center, radius};
+    shape.exact = RoundShape{center, radius};
+    TextureStep to_center;
+    for (int i = 0; i < 3; ++i)
+        to_center.rows[size_t(i)].w = -center[i];
+    shape.to_uv = {to_center, wrapped_around_y(TextureStep::Kind::Spherical)};
     return shape;
 }
 
@@ -123,7 +127,7 @@ Shape parse_torus(Reader& reader) {
     const double major = parse_float(reader);
     reader.take_comma();
     const double minor = std::abs(parse_float(reader));
-    return curved(2, 0, [=](int segments, bool, Facets& out) {
+    Shape shape = curved(2, 0, [=](int segments, bool, Facets& out) {
         add_grid(
             segments, segments,
             [&](int column, int row) -> Corner {
@@ -135,6 +139,10 @@ Shape parse_torus(Reader& reader) {
             },
             out);
     });
+    TextureStep mirrored; // POV-Ray's tori begin at -x
+    mirrored.rows[0].x = -1;
+    shape.to_uv = {mirrored, wrapped_around_y(TextureStep::Kind::Toroidal, major)};
+    return shape;
 }
 
 Shape parse_disc(Reader& reader) {

@@ -127,6 +127,7 @@ Shape parse_lathe(Reader& reader) {
     reader.take_comma();
     const std::vector<dvec2> points = parse_points(reader, parse_count(reader, 2));
     Shape shape;
+    shape.knows_uv = false;
     shape.per_segment = curve == Curve::Linear ? 2 * double(points.size()) : 0;
     shape.per_square = curve == Curve::Linear ? 0 : double(points.size()) / 4;
     shape.cut = [=](int segments, bool, Facets& out) {
@@ -153,6 +154,10 @@ Shape parse_sor(Reader& reader) {
     Shape shape;
     shape.per_square = double(points.size()) / 4;
     shape.per_segment = 2;
+    const double low = points[1].y, high = points[points.size() - 2].y;
+    TextureStep by_height;
+    by_height.rows[1] = dvec4(0, 1, 0, -low) / std::max(high - low, 1e-300);
+    shape.to_uv = {by_height, wrapped_around_y(TextureStep::Kind::Cylindrical)};
     shape.cut = [points](int segments, bool open, Facets& out) {
         std::vector<ProfilePoint> profile;
         const int steps = steps_of(Curve::Cubic, segments);

@@ -2,7 +2,7 @@
 // Tables of the language's functions and constants, each in one row.
 #include "importers/pov/values/builtin.h"
 
-#include "core/texture/noise.h"
+#include "core/texture/noise/noise.h"
 #include "importers/file/text.h"
 #include "importers/pov/values/builtin_object.h"
 #include "importers/pov/values/transform.h"

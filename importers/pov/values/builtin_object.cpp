@@ -52,6 +52,10 @@ const TraceTarget& target_of(Reader& reader, const ObjectPtr& object) {
 
 } // namespace
 
+const Region& region_of(Reader& reader, const ObjectPtr& object) {
+    return target_of(reader, object).region();
+}
+
 Number parse_extent(Reader& reader, const Token& token) {
     assert(token.is("min_extent") || token.is("max_extent"));
     reader.expect('(', token.name->text);
@@ -68,7 +72,7 @@ Number parse_inside(Reader& reader, const Token& token) {
     reader.take_comma();
     const dvec3 point = parse_vector(reader);
     reader.expect(')', token.name->text);
-    return Number::of(target_of(reader, object).contains(point));
+    return Number::of(target_of(reader, object).region().contains(point));
 }
 
 Number parse_trace(Reader& reader, const Token& token) {

@@ -3,6 +3,7 @@
 // their ( on.
 #pragma once
 
+#include "core/region/region.h"
 #include "importers/pov/values/expression.h"
 
 namespace ovc::pov {
@@ -17,5 +18,8 @@ Number parse_trace(Reader& reader, const Token& token);
 
 /// Reads (OBJECT, POINT). Returns 1 for a point inside of the object, else 0.
 Number parse_inside(Reader& reader, const Token& token);
+
+/// Returns what the object holds within it, valid until the next call.
+const Region& region_of(Reader& reader, const ObjectPtr& object);
 
 } // namespace ovc::pov

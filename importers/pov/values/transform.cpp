@@ -94,6 +94,11 @@ static dvec3 parse_scale(Reader& reader) {
     return by;
 }
 
+std::array<dvec4, 3> rows_of(const dmat4& matrix) {
+    const dmat4 rows = glm::transpose(matrix);
+    return {rows[0], rows[1], rows[2]};
+}
+
 std::optional<dmat4> take_transform(Reader& reader) {
     if (reader.take("translate"))
         return translation(parse_vector(reader));

@@ -4,6 +4,8 @@
 
 #include "importers/pov/values/expression.h"
 
+#include <array>
+
 namespace ovc::pov {
 
 dmat4 translation(const dvec3& by);
@@ -12,6 +14,9 @@ dmat4 scaling(const dvec3& by);
 dmat4 rotation(const dvec3& degrees);
 /// Returns the rotation about an axis of any length; about 0 it rotates nothing.
 dmat4 rotation_about(const dvec3& axis, double radians);
+
+/// Returns the rows of the matrix without its last, which is 0, 0, 0, 1.
+std::array<dvec4, 3> rows_of(const dmat4& matrix);
 
 /// Takes the transformation that comes next, its word included. Takes and returns nothing where
 /// the next token is another word.

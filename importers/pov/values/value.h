@@ -174,11 +174,6 @@ struct SkySphere {
     std::vector<Pigment> pigments;
 };
 
-/// A declared value that Overcast does not use: a rainbow.
-struct Opaque {
-    std::string kind;
-};
-
 /// Names, arrays, groups and clips share objects that do not change any more, and a scene forgets
 /// them in any order. The last of them frees the object, as SharedFunction explains; to copy it for
 /// each would double a group of groups at every level.
@@ -251,7 +246,7 @@ struct Function {
 struct Value
     : std::variant<std::monostate, Number, std::string, ObjectPtr, Texture, Pigment, Normal,
                    Surface, Interior, Material, ColorMap, SkySphere, Fog, dmat4, Array,
-                   const Macro*, Function, Spline, CameraValue, DataFile, Media, Opaque> {
+                   const Macro*, Function, Spline, CameraValue, DataFile, Media, Rainbow> {
     using variant::variant;
     using variant::operator=;
 };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/texture/noise.h"
+#include "core/texture/noise/noise.h"
 
-#include "core/texture/noise_values.h"
+#include "core/texture/noise/noise_values.h"
 
 #include <algorithm>
 #include <array>
@@ -78,6 +78,61 @@ struct Cell {
     uint32_t kind[8];
 };
 
+constexpr uint32_t kGradients = 2048; // and the period of their lattice
+
+/// Slopes of length 1 and a shuffle of their numbers, by the random numbers of POV-Ray's rand()
+/// from 1 on.
+/// Based on: Perlin's program in Ebert and others, "Texturing and Modeling", chapter 2; the sizes,
+/// and that only every second number is moved, follow from povray's values.
+struct Gradients {
+    Gradients() {
+        uint32_t state = 1;
+        const auto random = [&] {
+            state = state * 1812433253u + 12345u;
+            return state >> 16 & 0x7fff;
+        };
+        for (dvec3& slope : slopes) {
+            do
+                for (int i = 0; i < 3; ++i)
+                    slope[i] = double(random() % (2 * kGradients)) / kGradients - 1;
+            while (glm::dot(slope, slope) > 1);
+            slope = glm::normalize(slope);
+        }
+        for (uint32_t i = 0; i <= kGradients; ++i)
+            shuffled[i] = i;
+        for (uint32_t i = kGradients; i > 0; i -= 2)
+            std::swap(shuffled[i], shuffled[random() % kGradients]);
+    }
+
+    const dvec3& at(int64_t x, int64_t y, int64_t z) const {
+        const auto number = [&](int64_t i) { return shuffled[size_t(i & (kGradients - 1))]; };
+        return slopes[size_t(number(number(x) + y) + z) & (kGradients - 1)];
+    }
+
+    std::array<dvec3, kGradients> slopes;
+    std::array<uint32_t, kGradients + 1> shuffled;
+};
+
+/// Returns Perlin's noise of 1985 without values, from about -1 to 1.
+double gradient_noise(const dvec3& at) {
+    static const Gradients kAll;
+    // The lattice lies so far off that of whole numbers, as measured.
+    constexpr double kGradientShift = 1664.0231572130614;
+    const dvec3 place = is_finite(at) ? glm::clamp(at, -1e15, 1e15) + kGradientShift : dvec3(0);
+    const dvec3 low = glm::floor(place), offset = place - low;
+    double sum = 0;
+    for (int i = 0; i < 8; ++i) {
+        const glm::ivec3 corner(i & 1, i >> 1 & 1, i >> 2);
+        const dvec3 from_corner = offset - dvec3(corner);
+        const dvec3 t = dvec3(1) - glm::abs(from_corner);
+        const dvec3& slope = kAll.at(int64_t(low.x) + corner.x, int64_t(low.y) + corner.y,
+                                     int64_t(low.z) + corner.z);
+        sum +=
+            smooth_step(t.x) * smooth_step(t.y) * smooth_step(t.z) * glm::dot(slope, from_corner);
+    }
+    return sum;
+}
+
 /// Corrected is (noise + kCorrection) / kRange, as measured.
 constexpr double kCorrection = 1.05242, kRange = 2.041417;
 
@@ -88,6 +143,8 @@ uint32_t cell_number(int64_t x, int64_t y, int64_t z) {
 }
 
 double noise(const dvec3& at, NoiseKind kind) {
+    if (kind == NoiseKind::Perlin) // the range is as measured
+        return std::clamp(0.4925 + 0.795 * gradient_noise(at), 0.0, 1.0);
     const double value = Cell(at).noise(0);
     return std::clamp(kind == NoiseKind::Original ? value + 0.5 : (value + kCorrection) / kRange,
                       0.0, 1.0);
@@ -110,7 +167,7 @@ dvec3 turbulence(const dvec3& at, const Octaves& octaves) {
 }
 
 double scalar_turbulence(const dvec3& at, const Octaves& octaves, NoiseKind kind) {
-    const bool corrected = kind == NoiseKind::Corrected;
+    const bool corrected = kind != NoiseKind::Original;
     double sum = 0, share = 1;
     dvec3 where = at;
     for (uint64_t i = 0; i < octaves.count; ++i) {

@@ -3,7 +3,7 @@
 // sources of ripples and waves.
 #pragma once
 
-#include "core/texture/noise.h"
+#include "core/texture/noise/noise.h"
 
 #include <array>
 

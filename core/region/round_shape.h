@@ -1,26 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
-// ExactShape: a ball, cylinder or cone as formulas, which trace() of a scene asks instead of
-// triangles: scenes build on what it says.
+// RoundShape: a ball, cylinder or cone as formulas, which trace() of a scene asks instead of
+// triangles, as patterns of objects do: scenes build on what it says.
 #pragma once
 
 #include "core/vec.h"
 
 #include <cmath>
 
-namespace ovc::pov {
+namespace ovc {
 
 /// A ball around `base`, or the cone between two circles that stand across their axis.
-struct ExactShape {
+struct RoundShape {
     dvec3 base{0};
     double radius = 0; // of the ball, or at the base
     dvec3 cap{0};      // of a cone: not the base
     double cap_radius = 0;
     bool is_ball = true;
     bool open = false; // a cone without the disks at its ends
+
+    bool operator==(const RoundShape&) const = default;
 };
 
 /// Where a ray meets a surface.
-struct ExactMeeting {
+struct RoundMeeting {
     double t;
     dvec3 normal; // outwards, of any length
 };
@@ -43,16 +45,16 @@ void for_each_root(double a, double b, double c, const Use& use) {
         use(c / q);
 }
 
-/// Calls use(ExactMeeting) with each meeting of the line `from` + t `way`, in no order. A ray along
+/// Calls use(RoundMeeting) with each meeting of the line `from` + t `way`, in no order. A ray along
 /// the surface may have none.
 template <class Use>
-void for_each_meeting(const ExactShape& shape, const dvec3& from, const dvec3& way,
+void for_each_meeting(const RoundShape& shape, const dvec3& from, const dvec3& way,
                       const Use& use) {
     const dvec3 off = from - shape.base;
     if (shape.is_ball) {
         for_each_root(glm::dot(way, way), glm::dot(off, way),
                       glm::dot(off, off) - shape.radius * shape.radius, [&](double t) {
-                          use(ExactMeeting{t, off + t * way});
+                          use(RoundMeeting{t, off + t * way});
                       });
         return;
     }
@@ -68,7 +70,7 @@ void for_each_meeting(const ExactShape& shape, const dvec3& from, const dvec3& w
                   glm::dot(across, across) - radius * radius, [&](double t) {
                       const double height = up + t * rise, wide = radius + t * growth;
                       if (height >= 0 && height <= length && wide >= 0)
-                          use(ExactMeeting{t, across + t * drift - slope * wide * axis});
+                          use(RoundMeeting{t, across + t * drift - slope * wide * axis});
                   });
     if (shape.open || rise == 0)
         return;
@@ -77,12 +79,12 @@ void for_each_meeting(const ExactShape& shape, const dvec3& from, const dvec3& w
         const double wide = at_cap ? shape.cap_radius : shape.radius;
         const dvec3 there = across + t * drift;
         if (glm::dot(there, there) <= wide * wide)
-            use(ExactMeeting{t, at_cap ? axis : -axis});
+            use(RoundMeeting{t, at_cap ? axis : -axis});
     }
 }
 
 /// Returns whether the point is inside of the shape, or of an open one if its ends were closed.
-inline bool is_within(const ExactShape& shape, const dvec3& point) {
+inline bool is_within(const RoundShape& shape, const dvec3& point) {
     const dvec3 off = point - shape.base;
     if (shape.is_ball)
         return glm::dot(off, off) < shape.radius * shape.radius;
@@ -93,4 +95,4 @@ inline bool is_within(const ExactShape& shape, const dvec3& point) {
     return share > 0 && share < 1 && glm::dot(across, across) < wide * wide;
 }
 
-} // namespace ovc::pov
+} // namespace ovc

@@ -2,7 +2,7 @@
 // Which random numbers POV-Ray takes was found by asking it for values: cells shows the numbers of
 // a Mersenne Twister with its usual seed (Matsumoto and Nishimura 1998), and the distances of
 // crackle tell the points. docs/decisions/0033-textures-are-trees-in-the-scene.md says how.
-#include "core/texture/random_cells.h"
+#include "core/texture/noise/random_cells.h"
 
 #include <algorithm>
 #include <cmath>

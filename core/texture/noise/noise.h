@@ -11,8 +11,8 @@
 namespace ovc {
 
 /// POV-Ray's noise_generator. Original is cut off at 0 and 1; Corrected is scaled to stay within.
-/// POV-Ray's third, Perlin's own noise, is drawn as Corrected.
-enum class NoiseKind : uint64_t { Original = 1, Corrected = 2 };
+/// Perlin has no values at the points of its lattice, only slopes.
+enum class NoiseKind : uint64_t { Original = 1, Corrected = 2, Perlin = 3 };
 
 inline constexpr uint64_t kMaxOctaves = 10;
 
