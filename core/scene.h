@@ -199,6 +199,15 @@ struct SpotCone {
     double tightness = 0;
 };
 
+/// The beam of a cylinder of light, as POV-Ray's: the light is full within `radius` of the axis,
+/// none beyond `falloff` (> 0) and smooth in between, and all of it is multiplied by (1 - distance
+/// from the axis / falloff) ^ tightness.
+struct LightBeam {
+    double radius = 0;
+    double falloff = 1;
+    double tightness = 0;
+};
+
 /// A light that emits evenly. Its light arrives as color / pi x the cosine, without fall-off, as
 /// that of POV-Ray's light_source does by default.
 struct Light {
@@ -207,7 +216,8 @@ struct Light {
     bool on_camera = false; // mounted on the camera: position is an offset from the eye
     /// The axis of a spotlight, or the direction in which parallel light goes; unit length.
     dvec3 direction{0, 0, -1};
-    std::optional<SpotCone> cone; // of a spotlight
+    std::optional<SpotCone> cone;  // of a spotlight
+    std::optional<LightBeam> beam; // of a cylinder of light, which is parallel
     /// All light goes along `direction`, from the plane through `position` that is perpendicular to
     /// it. Surfaces behind that plane are lit too, as in POV-Ray.
     bool parallel = false;
@@ -224,6 +234,8 @@ struct Light {
     /// Shadow rays go to position + shadow_offset, a point of an area light whose light has its
     /// direction and strength from its middle, as POV-Ray's has without area_illumination.
     dvec3 shadow_offset{0};
+    /// What is nearer to the light than this throws no shadow, such as what it lies on.
+    double clearance = 0;
 };
 
 /// The image is a window at the end of `direction` from the eye, `right` wide and `up` high

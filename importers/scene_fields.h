@@ -129,9 +129,14 @@ void each_field(auto& io, Some<SpotCone> auto& c) {
     io(c.radius_cosine, c.falloff_cosine, c.tightness);
 }
 
+void each_field(auto& io, Some<LightBeam> auto& b) {
+    io(b.radius, b.falloff, b.tightness);
+}
+
 void each_field(auto& io, Some<Light> auto& l) {
-    io(l.position, l.color, l.shadow_offset, l.on_camera, l.direction, l.cone, l.parallel,
-       l.shadowless, l.lights_media, l.fades_in_air, l.fade_distance, l.fade_power, l.stand_in);
+    io(l.position, l.color, l.shadow_offset, l.clearance, l.on_camera, l.direction, l.cone, l.beam,
+       l.parallel, l.shadowless, l.lights_media, l.fades_in_air, l.fade_distance, l.fade_power,
+       l.stand_in);
 }
 
 void each_field(auto& io, Some<ImageWindow> auto& w) {

@@ -193,9 +193,29 @@ static dvec3 towards_light(const Light& light, const dvec3& position) {
     return light.parallel ? std::abs(glm::dot(there, light.direction)) * -light.direction : there;
 }
 
-/// Returns the share of the light's color after its cone and its fall-off, as in POV-Ray 3.7.
-static double attenuation(const Light& light, const dvec3& towards, double distance) {
+/// Returns 1 for 1 or more, 0 for 0 or less, and what is smooth in between.
+static double smooth_step(double x) {
+    const double t = std::clamp(x, 0.0, 1.0);
+    return t * t * (3 - 2 * t);
+}
+
+/// Returns the share of the light that is left so far off the beam's axis.
+static double share_of_beam(const LightBeam& beam, double off_axis) {
+    if (off_axis >= beam.falloff)
+        return 0;
+    const double edge = off_axis <= beam.radius
+                            ? 1
+                            : smooth_step((beam.falloff - off_axis) / (beam.falloff - beam.radius));
+    return std::pow(1 - off_axis / beam.falloff, beam.tightness) * edge;
+}
+
+/// Returns the share of the light's color that is left where `there` leads from to the light: after
+/// its cone, its beam and its fall-off, as in POV-Ray 3.7. towards: the light's direction.
+static double attenuation(const Light& light, const dvec3& there, const dvec3& towards,
+                          double distance) {
     double share = 1;
+    if (light.beam)
+        share = share_of_beam(*light.beam, glm::length(glm::cross(there, light.direction)));
     if (light.cone) {
         const SpotCone& cone = *light.cone;
         const double cosine = -glm::dot(towards, light.direction);
@@ -203,8 +223,8 @@ static double attenuation(const Light& light, const dvec3& towards, double dista
             return 0;
         const double x =
             (cosine - cone.falloff_cosine) / (cone.radius_cosine - cone.falloff_cosine);
-        const double edge = cosine >= cone.radius_cosine ? 1 : std::clamp(x, 0.0, 1.0);
-        share = std::pow(cosine, cone.tightness) * edge * edge * (3 - 2 * edge);
+        const double edge = cosine >= cone.radius_cosine ? 1 : smooth_step(x);
+        share = std::pow(cosine, cone.tightness) * edge;
     }
     if (light.fade_distance > 0 && light.fade_power > 0)
         share *= 2 / (1 + std::pow(distance / light.fade_distance, light.fade_power));
@@ -215,7 +235,8 @@ FromLight light_at(const Light& light, const dvec3& position) {
     const dvec3 there = towards_light(light, position);
     const double distance = glm::length(there);
     const dvec3 towards = distance > 0 ? there / distance : dvec3(0);
-    return {towards, light.color * float(attenuation(light, towards, distance))};
+    return {towards,
+            light.color * float(attenuation(light, light.position - position, towards, distance))};
 }
 
 vec3 direct_light(const Light& light, const SurfacePoint& surface) {
@@ -234,7 +255,9 @@ vec3 direct_light(const Light& light, const SurfacePoint& surface) {
 }
 
 Ray shadow_ray(const Light& light, const dvec3& position) {
-    return {position, 0, towards_light(light, position) + light.shadow_offset, 1};
+    const dvec3 there = towards_light(light, position) + light.shadow_offset;
+    const double length = glm::length(there);
+    return {position, 0, there, length > light.clearance ? 1 - light.clearance / length : 0};
 }
 
 Branches branches(const SurfacePoint& surface, bool total) {

@@ -148,6 +148,27 @@ TEST(DirectLight, ParallelLightComesFromOneSideEverywhere) {
     EXPECT_NEAR(glm::dot(ray.at(1) - light.position, light.direction), 0, 1e-12);
 }
 
+/// As povray 3.7 draws a plane that a cylinder of light with radius 2 and falloff 5 meets head on.
+TEST(DirectLight, BeamsAreFullNearTheirAxis) {
+    Light light{dvec3(0, 10, 0), vec3(1)};
+    light.parallel = true;
+    light.direction = {0, -1, 0};
+    light.beam = LightBeam{2, 5, 0};
+    const auto off_axis = [&](double x) { return double(light_at(light, {x, 0, 0}).color.x); };
+    for (const auto& [x, share] : {std::pair(1.9, 1.0), {2.5, 0.9259}, {4.5, 0.0741}, {5.1, 0.0}})
+        EXPECT_NEAR(off_axis(x), share, 1e-4) << x;
+    light.beam->tightness = 1;
+    for (const auto& [x, share] : {std::pair(0.0, 1.0), {1.0, 0.8}, {2.5, 0.463}, {4.0, 0.0519}})
+        EXPECT_NEAR(off_axis(x), share, 1e-4) << x;
+}
+
+TEST(ShadowRay, EndsBeforeWhatTheLightLiesOn) {
+    Light light{{0, 10, 0}, vec3(1)};
+    light.clearance = 1e-3;
+    EXPECT_NEAR(shadow_ray(light, dvec3(0)).t_max, 1 - 1e-4, 1e-12);
+    EXPECT_EQ(shadow_ray(light, {0, 10, 0}).t_max, 0);
+}
+
 TEST(ShadowRay, EndsAtTheLight) {
     const SurfacePoint s = surface_point(floor_scene(), kFromAbove, kShadedHit);
     const Light light{{3, 4, 5}, vec3(1)};

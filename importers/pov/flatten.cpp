@@ -78,13 +78,13 @@ std::vector<TextureStep> to_uv_of(const Object& object, const dmat4& placed) {
     const Shape* const shape = std::get_if<Shape>(&object.shape);
     if (shape && !shape->knows_uv)
         return {};
-    if (!shape || shape->to_uv.empty()) { // povray takes those of the world
-        TextureStep flat;
-        flat.rows[2] = dvec4(0);
+    TextureStep flat; // a pattern is evaluated at (u, v, 0)
+    flat.rows[2] = dvec4(0);
+    if (!shape || shape->to_uv.empty()) // povray takes x and y of the world
         return {flat};
-    }
     std::vector<TextureStep> steps = {{TextureStep::Kind::Affine, rows_of(glm::inverse(placed))}};
     steps.insert(steps.end(), shape->to_uv.begin(), shape->to_uv.end());
+    steps.push_back(flat);
     return steps;
 }
 

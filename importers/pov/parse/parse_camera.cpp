@@ -112,7 +112,8 @@ CameraValue parse_camera(Reader& reader) {
             target = parse_vector(reader);
         else if (reader.take("angle")) {
             angle = parse_float(reader);
-            if (reader.take(',') && starts_number(reader, reader.peek()))
+            reader.take_comma();
+            if (starts_number(reader, reader.peek()))
                 camera.vertical_angle = parse_float(reader);
         } else if (take_bend(reader, camera))
             ;

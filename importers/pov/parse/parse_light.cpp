@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads light_source: points, spots and parallel light.
+// Reads light_source: points, spots, cylinders and parallel light.
 #include "importers/pov/parse/parse_object.h"
 #include "importers/pov/parse/texture.h"
 #include "importers/pov/values/transform.h"
@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 namespace ovc::pov {
 
@@ -22,20 +23,18 @@ double cosine_of_degrees(double degrees) {
 /// Parts of a light that take effect once all of them are read.
 struct Words {
     dvec3 point_at{0, 0, 1};
-    double radius = 30, falloff = 45, tightness = 0;
+    std::optional<double> radius, falloff; // degrees of a spot, a cylinder's distances
+    double tightness = 0;
     bool spot = false, cylinder = false;
     ObjectPtr looks_like;
 };
 
 bool parse_light_part(Reader& reader, Words& words, Light& light) {
-    const Token token = reader.peek();
     if (reader.take("spotlight"))
         words.spot = true;
-    else if (reader.take("cylinder")) {
+    else if (reader.take("cylinder"))
         words.cylinder = true;
-        reader.omit("cylinder light", token.place,
-                    "a cylinder of light is taken for parallel light");
-    } else if (reader.take("parallel"))
+    else if (reader.take("parallel"))
         light.parallel = true;
     else if (reader.take("point_at"))
         words.point_at = parse_vector(reader);
@@ -139,10 +138,15 @@ void parse_light_source(Reader& reader, Object& object) {
     const dvec3 way = words.point_at - light.position;
     if (glm::length(way) > 0)
         light.direction = glm::normalize(way);
-    light.parallel = light.parallel || words.cylinder;
+    if (words.cylinder) {
+        light.parallel = true;
+        light.beam = LightBeam{words.radius.value_or(0.75),
+                               std::max(words.falloff.value_or(1), 1e-9), words.tightness};
+    }
+    light.clearance = 1e-3; // as povray 3.7 draws planes before a light
     if (words.spot)
-        light.cone = SpotCone{cosine_of_degrees(words.radius), cosine_of_degrees(words.falloff),
-                              words.tightness};
+        light.cone = SpotCone{cosine_of_degrees(words.radius.value_or(30)),
+                              cosine_of_degrees(words.falloff.value_or(45)), words.tightness};
     if (words.looks_like) {
         auto lamp = std::make_shared<Object>(*words.looks_like);
         place(*lamp, translation(light.position));
