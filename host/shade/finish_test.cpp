@@ -91,6 +91,25 @@ TEST(Finish, FilmsHaveTheColorsThatPovrayDraws) {
                 std::cos(2 * std::numbers::pi * 2 * 0.02 * 1.7356 / 0.7), 1e-3);
 }
 
+TEST(Finish, AverageTexturesAreMixedByTheirWeights) {
+    SeenTriangle seen({});
+    Scene& scene = seen.scene;
+    scene.materials[0].finish = Finish{};
+    scene.materials.push_back({"other", vec3(1, 0, 0.5f)});
+    scene.materials[1].finish = Finish{};
+    scene.materials.push_back({"mixed"});
+    Texture mix;
+    mix.pattern.kind = Pattern::Kind::Average;
+    mix.stops = {{3, {}, 0}, {1, {}, 1}};
+    scene.textures = {mix};
+    scene.materials[2].finish = Finish{};
+    scene.materials[2].mix = PlacedTexture{0};
+    scene.meshes[0].material = 2;
+    const SurfacePoint point = surface_point(scene, {{-1, 1, 0}, 0, {1, -1, 0}}, kHit);
+    ASSERT_EQ(point.coats.size(), 2u);
+    expect_near(point.color, 0.75f * kColor + 0.25f * vec3(1, 0, 0.5f));
+}
+
 TEST(Finish, MetalColorsItsHighlight) {
     Finish finish;
     finish.diffuse = 0;

@@ -101,17 +101,26 @@ static vec3 add_coats(const Scene& scene, uint32_t number, const TexturePoint& p
 static vec3 add_mix(const Scene& scene, const PlacedTexture& placed, const TexturePoint& point,
                     const vec3& weight, const SurfacePoint& bare, std::vector<Coat>& coats) {
     const Texture& mix = scene.textures[placed.texture];
+    vec3 through(0);
+    const auto add_stop = [&](size_t stop, double share) {
+        if (share > 0)
+            through += float(share) * add_coats(scene, mix.stops[stop].texture, point,
+                                                float(share) * weight, bare, coats);
+    };
+    if (mix.pattern.kind == Pattern::Kind::Average) {
+        double weights = 0;
+        for (const TextureStop& stop : mix.stops)
+            weights += stop.at;
+        for (size_t i = 0; i < mix.stops.size(); ++i)
+            add_stop(i, weights > 0 ? mix.stops[i].at / weights : 1.0 / double(mix.stops.size()));
+        return through;
+    }
     const PatternPlace place = evaluate(scene.textures, mix.pattern, placed.at(point));
     const Between where = between(
         mix.stops.size(), [&](size_t i) { return mix.stops[i].at; }, place.value,
         is_discrete(mix.pattern.kind));
-    const float shares[2] = {float(1 - where.share), float(where.share)};
-    vec3 through(0);
-    for (int i = 0; i < 2; ++i)
-        if (shares[i] > 0)
-            through +=
-                shares[i] * add_coats(scene, mix.stops[i ? where.second : where.first].texture,
-                                      point, shares[i] * weight, bare, coats);
+    add_stop(where.first, 1 - where.share);
+    add_stop(where.second, where.share);
     return through;
 }
 

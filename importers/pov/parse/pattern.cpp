@@ -91,6 +91,11 @@ bool is_other_pattern(const Token& token) {
     return is_one_of(token, kWords);
 }
 
+/// Returns whether the map is a picture instead of a pattern.
+bool is_picture(const PatternMap& map) {
+    return map.image_map && map.stops.empty();
+}
+
 bool is_map(const Token& token) {
     static constexpr std::string_view kWords[] = {"color_map",   "colour_map", "pigment_map",
                                                   "texture_map", "normal_map", "density_map"};
@@ -109,8 +114,10 @@ void PatternParts::restart() {
     changed_ = false;
     if (!pigment_.pattern)
         return;
-    chosen_ = true;
     pattern_ = pigment_.pattern->pattern;
+    if (is_picture(*pigment_.pattern))
+        return;
+    chosen_ = true;
     stops_ = pigment_.pattern->stops;
     program_ = pigment_.pattern->program;
     image_ = pigment_.pattern->image_map;
@@ -602,9 +609,28 @@ void PatternParts::take_black_hole(const Token& word) {
     add_step(step);
 }
 
+/// Warps and turbulence move a picture as they do a pattern.
+void PatternParts::finish_picture() {
+    std::vector<TextureStep> steps = pattern_.steps;
+    if (pattern_.turbulence != dvec3(0)) {
+        const Octaves& octaves = pattern_.octaves;
+        steps.push_back({TextureStep::Kind::Turbulence,
+                         {dvec4(pattern_.turbulence, octaves.lambda),
+                          dvec4(octaves.omega, double(octaves.count), 0, 0), dvec4(0)}});
+    }
+    if (steps == pigment_.pattern->pattern.steps)
+        return;
+    auto moved = std::make_shared<PatternMap>(*pigment_.pattern);
+    moved->pattern.steps = std::move(steps);
+    pigment_.pattern = std::move(moved);
+}
+
 void PatternParts::finish() {
-    const bool is_picture = !chosen_ && pigment_.pattern && pigment_.pattern->image_map;
-    if (!changed_ || is_picture || (!chosen_ && !pigment_.pattern))
+    if (!chosen_ && pigment_.pattern && is_picture(*pigment_.pattern)) {
+        finish_picture();
+        return;
+    }
+    if (!changed_ || (!chosen_ && !pigment_.pattern))
         return;
     pigment_.pattern.reset();
     if (!chosen_)

@@ -50,6 +50,7 @@ private:
     void add_step(TextureStep step);
     void choose(Pattern::Kind kind, Pattern::Wave wave);
     void refuse(const Token& token);
+    void finish_picture();
 
     Reader& reader_;
     Pigment& pigment_;

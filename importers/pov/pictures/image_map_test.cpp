@@ -183,6 +183,20 @@ TEST(PovBumpMap, ItsSizeComesFromTheBlockOrFromBehindIt) {
     EXPECT_EQ(bump_of("bump_map { png \"a.png\" } 0.7")->kind, Bump::Kind::Picture);
 }
 
+TEST(PovImageMap, WarpsAndTurbulenceMovePictures) {
+    const ReadPov read = read_beside_picture(
+        "#declare P = pigment { image_map { png \"a.png\" } warp { repeat x } scale 2 } "
+        "sphere { 0, 1 pigment { P turbulence 0.3 octaves 2 } }");
+    EXPECT_TRUE(read.warnings.empty());
+    const Texture& texture = read.scene.textures.at(read.material().texture.value().texture);
+    EXPECT_EQ(texture.kind, TextureKind::Image);
+    ASSERT_EQ(texture.pattern.steps.size(), 3u);
+    EXPECT_EQ(texture.pattern.steps[0].kind, TextureStep::Kind::Repeat);
+    EXPECT_EQ(texture.pattern.steps[2].kind, TextureStep::Kind::Turbulence);
+    EXPECT_EQ(texture.pattern.steps[2].rows[0], dvec4(0.3, 0.3, 0.3, 2));
+    EXPECT_EQ(texture.pattern.steps[2].rows[1].y, 2);
+}
+
 TEST(PovUvMapping, MeshesKeepCoordinatesForPatternsOnThem) {
     const std::string mesh = "mesh { triangle { 0, x, y uv_vectors <0, 0>, <1, 0>, <0, 1> } ";
     const std::string map = "checker rgb 0 rgb 1 scale 0.1";
