@@ -43,6 +43,16 @@ public:
         return {dvec3(ray.org), ray.t_min + 0.0, dvec3(ray.dir), ray.t_max + 0.0};
     }
 
+    /// Returns the address of ray i where the rays are doubles, as the caller wrote it; else that
+    /// of a copy in `room`.
+    const Ray* address(size_t i, Ray& room) const {
+        assert(i < size_);
+        if (!floats_)
+            return doubles_ + i;
+        room = (*this)[i];
+        return &room;
+    }
+
     /// Returns the rays themselves where they are doubles; else a copy in `room`, empty before.
     std::span<const Ray> in_double(std::vector<Ray>& room) const {
         if (!floats_)

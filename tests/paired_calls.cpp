@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // paired_calls BEFORE.so AFTER.so SCENE [--rays N] [--repeats N] times calls of two versions of the
 // library on the same rays, by turns, for docs/benchmarks.md. Prints the median and the quartiles
-// of the ratio of each pair. Answers must be the same bits.
+// of the ratio of each pair, of the seconds from call to return and of the CPU time, which other
+// programs change less. Answers must be the same bits.
 #include "core/system/stopwatch.h"
 #include "host/scene/scene_source.h"
 #include "host/scene/scene_summary.h"
@@ -16,6 +17,7 @@
 #include <cstddef>
 #include <cstdlib>
 #include <cstring>
+#include <ctime>
 #include <functional>
 #include <limits>
 #include <string>
@@ -113,10 +115,23 @@ std::vector<ovc_ray> bounced_rays(const Box& box, const std::vector<ovc_ray>& fi
     return rays;
 }
 
-void print(const char* what, std::vector<double> ratios) {
+/// What a call took.
+struct Cost {
+    double seconds = 0, cpu_seconds = 0;
+};
+
+template <class Call>
+Cost cost_of(Call&& call) {
+    const std::clock_t cpu = std::clock(); // of all threads
+    const Stopwatch watch;
+    call();
+    return {watch.seconds(), double(std::clock() - cpu) / CLOCKS_PER_SEC};
+}
+
+std::string spread(std::vector<double> ratios) {
     std::ranges::sort(ratios);
     const auto at = [&](double share) { return ratios[size_t(share * double(ratios.size() - 1))]; };
-    fmt::print("{:10} {:.3f} ({:.3f} to {:.3f})\n", what, at(0.5), at(0.25), at(0.75));
+    return fmt::format("{:.3f} ({:.3f} to {:.3f})", at(0.5), at(0.25), at(0.75));
 }
 
 Result<Done> run(const char* before, const char* after, const std::string& name, size_t count,
@@ -135,18 +150,17 @@ Result<Done> run(const char* before, const char* after, const std::string& name,
     const std::vector<ovc_ray> bounced = bounced_rays(box, primary, hits[0]);
 
     const auto compare = [&](const char* what, auto&& call, const auto& answers) {
-        std::vector<double> ratios;
+        std::vector<double> ratios, cpu_ratios;
         for (int i = 0; i < repeats + 2; ++i) {
-            std::array<double, 2> seconds{};
-            for (const size_t side : {size_t(i) % 2, 1 - size_t(i) % 2}) {
-                const Stopwatch watch;
-                call(side);
-                seconds[side] = watch.seconds();
-            }
-            if (i >= 2) // the first two compile kernels and move pages in
-                ratios.push_back(seconds[1] / seconds[0]);
+            std::array<Cost, 2> costs;
+            for (const size_t side : {size_t(i) % 2, 1 - size_t(i) % 2})
+                costs[side] = cost_of([&] { call(side); });
+            if (i < 2) // these compile kernels and move pages in
+                continue;
+            ratios.push_back(costs[1].seconds / costs[0].seconds);
+            cpu_ratios.push_back(costs[1].cpu_seconds / costs[0].cpu_seconds);
         }
-        print(what, std::move(ratios));
+        fmt::print("{:10} {}, CPU {}\n", what, spread(ratios), spread(cpu_ratios));
         if (std::memcmp(answers[0].data(), answers[1].data(),
                         answers[0].size() * sizeof(answers[0][0])) != 0)
             fmt::print("{:10} other answers\n", what);

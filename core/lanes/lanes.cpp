@@ -15,8 +15,12 @@ uint32_t cull_avx2(const CullRay& ray, CullLanes& lanes);
 uint32_t cull_avx512(const CullRay& ray, CullLanes& lanes);
 LanesAhead look_ahead_avx2(const LanesScene& scene, const RayLanes& rays);
 LanesAhead look_ahead_avx512(const LanesScene& scene, const RayLanes& rays);
-void to_frame_avx2(const LanesFrame& frame, const RayLanes& rays, LocalLanes& local);
-void to_frame_avx512(const LanesFrame& frame, const RayLanes& rays, LocalLanes& local);
+void to_frame_avx2(const LanesFrame& frame, const RayLanes& rays, const uint32_t* words,
+                   LocalRows& local);
+void to_frame_avx512(const LanesFrame& frame, const RayLanes& rays, const uint32_t* words,
+                     LocalRows& local);
+void gather_avx2(const Ray* const* rays, RayLanes& lanes);
+void gather_avx512(const Ray* const* rays, RayLanes& lanes);
 
 namespace {
 
@@ -62,8 +66,12 @@ static uint32_t cull_anywhere(const CullRay& ray, CullLanes& lanes) {
 static LanesAhead look_ahead_anywhere(const LanesScene& scene, const RayLanes& rays) {
     return look_ahead_by<Two>(scene, rays);
 }
-static void to_frame_anywhere(const LanesFrame& frame, const RayLanes& rays, LocalLanes& local) {
-    to_frame_by<Two>(frame, rays, local);
+static void to_frame_anywhere(const LanesFrame& frame, const RayLanes& rays, const uint32_t* words,
+                              LocalRows& local) {
+    to_frame_by<Two>(frame, rays, words, local);
+}
+static void gather_anywhere(const Ray* const* rays, RayLanes& lanes) {
+    gather_by<Two>(rays, lanes);
 }
 
 namespace {
@@ -104,6 +112,9 @@ std::vector<LookAhead> ways_to_look_ahead() {
 std::vector<ToFrame> ways_to_frame() {
     return OVC_WAYS(to_frame);
 }
+std::vector<Gather> ways_to_gather() {
+    return OVC_WAYS(gather);
+}
 
 void round_hits(HitLanes& lanes, int count) {
     static const RoundHits widest = ways_to_round_hits().back();
@@ -121,9 +132,14 @@ LanesAhead look_ahead(const LanesScene& scene, const RayLanes& rays) {
     static const LookAhead widest = ways_to_look_ahead().back();
     return widest(scene, rays);
 }
-void to_frame(const LanesFrame& frame, const RayLanes& rays, LocalLanes& local) {
+void to_frame(const LanesFrame& frame, const RayLanes& rays, const uint32_t* words,
+              LocalRows& local) {
     static const ToFrame widest = ways_to_frame().back();
-    widest(frame, rays, local);
+    widest(frame, rays, words, local);
+}
+void gather(const Ray* const* rays, RayLanes& lanes) {
+    static const Gather widest = ways_to_gather().back();
+    widest(rays, lanes);
 }
 
 } // namespace ovc

@@ -34,8 +34,12 @@ uint32_t cull_avx2(const CullRay& ray, CullLanes& lanes) {
 LanesAhead look_ahead_avx2(const LanesScene& scene, const RayLanes& rays) {
     return look_ahead_by<Four>(scene, rays);
 }
-void to_frame_avx2(const LanesFrame& frame, const RayLanes& rays, LocalLanes& local) {
-    to_frame_by<Four>(frame, rays, local);
+void to_frame_avx2(const LanesFrame& frame, const RayLanes& rays, const uint32_t* words,
+                   LocalRows& local) {
+    to_frame_by<Four>(frame, rays, words, local);
+}
+void gather_avx2(const Ray* const* rays, RayLanes& lanes) {
+    gather_by<Four>(rays, lanes);
 }
 
 } // namespace ovc

@@ -33,8 +33,12 @@ uint32_t cull_avx512(const CullRay& ray, CullLanes& lanes) {
 LanesAhead look_ahead_avx512(const LanesScene& scene, const RayLanes& rays) {
     return look_ahead_by<Eight>(scene, rays);
 }
-void to_frame_avx512(const LanesFrame& frame, const RayLanes& rays, LocalLanes& local) {
-    to_frame_by<Eight>(frame, rays, local);
+void to_frame_avx512(const LanesFrame& frame, const RayLanes& rays, const uint32_t* words,
+                     LocalRows& local) {
+    to_frame_by<Eight>(frame, rays, words, local);
+}
+void gather_avx512(const Ray* const* rays, RayLanes& lanes) {
+    gather_by<Eight>(rays, lanes);
 }
 
 } // namespace ovc

@@ -5,7 +5,9 @@
 
 #include "core/exact/double_double.h"
 
+#include <cstddef>
 #include <cstdint>
+#include <utility>
 
 namespace ovc {
 
@@ -48,6 +50,26 @@ OVC_INLINE WordsOf<V> words_of(V x) {
 template <class V>
 OVC_INLINE V all_lanes(double x) {
     return V{} + x;
+}
+
+template <size_t d, class V, size_t... k>
+OVC_INLINE void swap_blocks(V& a, V& b, std::index_sequence<k...>) {
+    constexpr size_t n = sizeof...(k);
+    const V low = __builtin_shufflevector(a, b, int(k & d ? n + k - d : k)...);
+    const V high = __builtin_shufflevector(a, b, int(k & d ? n + k : k + d)...);
+    a = low;
+    b = high;
+}
+/// Turns rows into columns: element k of vector i becomes element i of vector k. There are as many
+/// vectors as elements in one. By blocks of d, then of twice as many.
+template <size_t d = 1, class V, size_t n>
+OVC_INLINE void transpose(V (&rows)[n]) {
+    if constexpr (d < n) {
+        for (size_t i = 0; i < n; ++i)
+            if ((i & d) == 0)
+                swap_blocks<d>(rows[i], rows[i + d], std::make_index_sequence<n>());
+        transpose<2 * d>(rows);
+    }
 }
 
 /// Returns a bit for each lane that is true.

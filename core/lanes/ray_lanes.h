@@ -4,6 +4,7 @@
 #pragma once
 
 #include "core/box.h"
+#include "core/ray.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -21,6 +22,10 @@ struct RayLanes {
     alignas(64) double t_min[kCount], t_max[kCount];
     alignas(64) double from[kCount]; // t_min, or more where hits up to some place do not count
 };
+
+/// Fills in all lanes with eight rays, each of which begins at its t_min. A t_min or t_max of -0
+/// becomes 0.
+void gather(const Ray* const* rays, RayLanes& lanes);
 
 /// A box as the lanes read it.
 struct LanesBox {
@@ -57,20 +62,24 @@ struct LanesFrame {
     float no_ray = 0, undecidable = 0; // what t_end is where there is none
 };
 
-/// Eight rays in a frame (gpu/trace/local_ray.h).
-struct LocalLanes {
-    alignas(64) float org[3][RayLanes::kCount], dir[3][RayLanes::kCount];
-    alignas(64) float t_end[RayLanes::kCount];
+/// Eight rays in a frame, one behind the other as gpu/trace/local_ray.h has them.
+struct LocalRows {
+    static constexpr int kOrg = 0, kEnd = 3, kDir = 4, kWord = 7; // places in a row
+    alignas(64) float rows[RayLanes::kCount][8];
     alignas(64) double enter[RayLanes::kCount], speed[RayLanes::kCount];
 };
 
-/// Fills in all lanes, with the same bits on every processor, from `from` and t_max of the rays.
-void to_frame(const LanesFrame& frame, const RayLanes& rays, LocalLanes& local);
+/// Fills in all rows, with the same bits on every processor, from `from` and t_max of the rays.
+/// words: the last word of each row.
+void to_frame(const LanesFrame& frame, const RayLanes& rays, const uint32_t* words,
+              LocalRows& local);
 
 /// Returns the functions per width of vectors that the processor has, the widest last: for tests.
 using LookAhead = LanesAhead (*)(const LanesScene&, const RayLanes&);
-using ToFrame = void (*)(const LanesFrame&, const RayLanes&, LocalLanes&);
+using ToFrame = void (*)(const LanesFrame&, const RayLanes&, const uint32_t*, LocalRows&);
+using Gather = void (*)(const Ray* const*, RayLanes&);
 std::vector<LookAhead> ways_to_look_ahead();
 std::vector<ToFrame> ways_to_frame();
+std::vector<Gather> ways_to_gather();
 
 } // namespace ovc

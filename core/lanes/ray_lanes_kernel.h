@@ -108,16 +108,10 @@ OVC_INLINE Inside<V> inside_box(const LanesBox& box, const RaysOf<V>& rays) {
     return {outside ? all_lanes<V>(1) : inside.enter, outside ? V{} : inside.exit};
 }
 
+/// Returns LocalRay::t_end: t_end_of() of gpu/trace/local_ray.cpp.
 template <class V>
-OVC_INLINE void store_floats(float* to, V from) {
-    const FloatsOf<V> floats = __builtin_convertvector(from, FloatsOf<V>);
-    __builtin_memcpy(to, &floats, sizeof(floats));
-}
-
-/// Writes LocalRay::t_end: t_end_of() of gpu/trace/local_ray.cpp.
-template <class V>
-OVC_INLINE void store_t_end(float* to, const LanesFrame& frame, const RaysOf<V>& rays,
-                            const Inside<V>& inside, V speed, V reach) {
+OVC_INLINE FloatsOf<V> t_end_of(const LanesFrame& frame, const RaysOf<V>& rays,
+                                const Inside<V>& inside, V speed, V reach) {
     using Floats = FloatsOf<V>;
     using Words = typename FloatsType<V>::Words;
     const MaskOf<V> is_ray = (inside.enter <= inside.exit) & (rays.t_max >= rays.from);
@@ -131,28 +125,70 @@ OVC_INLINE void store_t_end(float* to, const LanesFrame& frame, const RaysOf<V>&
     Floats t_end;
     __builtin_memcpy(&t_end, &words, sizeof(words));
     t_end = __builtin_convertvector(decidable, Words) ? t_end : Floats{} + frame.undecidable;
-    t_end = __builtin_convertvector(is_ray, Words) ? t_end : Floats{} + frame.no_ray;
-    __builtin_memcpy(to, &t_end, sizeof(t_end));
+    return __builtin_convertvector(is_ray, Words) ? t_end : Floats{} + frame.no_ray;
+}
+
+/// Writes columns of as many rows as a vector has elements, from `lane` on.
+template <class V>
+OVC_INLINE void store_rows(LocalRows& local, int lane, const FloatsOf<V> (&columns)[8]) {
+    constexpr int n = int(sizeof(V) / sizeof(double));
+    for (int column = 0; column < 8; column += n) {
+        FloatsOf<V> rows[n];
+        for (int i = 0; i < n; ++i)
+            rows[i] = columns[column + i];
+        transpose(rows);
+        for (int i = 0; i < n; ++i)
+            __builtin_memcpy(&local.rows[lane + i][column], &rows[i], sizeof(rows[i]));
+    }
 }
 
 template <class V>
-OVC_INLINE void to_frame_by(const LanesFrame& frame, const RayLanes& all, LocalLanes& local) {
+OVC_INLINE void to_frame_by(const LanesFrame& frame, const RayLanes& all, const uint32_t* words,
+                            LocalRows& local) {
+    using Floats = FloatsOf<V>;
     for (int lane = 0; lane < RayLanes::kCount; lane += int(sizeof(V) / sizeof(double))) {
         const RaysOf<V> rays(all, lane);
         const Inside<V> inside = inside_box(frame.box, rays);
         const V longest = rays.longest(), speed = longest * frame.scale, shorter = 1.0 / longest;
+        Floats columns[8];
         V reach{};
         for (int axis = 0; axis < 3; ++axis) {
             const V from_origin = rays.org[axis] - frame.origin[axis];
             const V travelled = rays.dir[axis] * inside.enter;
             reach = larger(reach, larger(magnitude(from_origin), magnitude(travelled)));
-            store_floats(local.dir[axis] + lane, rays.dir[axis] * shorter);
-            store_floats(local.org[axis] + lane, (from_origin + travelled) * frame.scale);
+            columns[LocalRows::kDir + axis] =
+                __builtin_convertvector(rays.dir[axis] * shorter, Floats);
+            columns[LocalRows::kOrg + axis] =
+                __builtin_convertvector((from_origin + travelled) * frame.scale, Floats);
         }
-        store_t_end(local.t_end + lane, frame, rays, inside, speed, reach * frame.scale);
+        columns[LocalRows::kEnd] = t_end_of(frame, rays, inside, speed, reach * frame.scale);
+        __builtin_memcpy(&columns[LocalRows::kWord], words + lane, sizeof(Floats));
+        store_rows<V>(local, lane, columns);
         __builtin_memcpy(local.enter + lane, &inside.enter, sizeof(V));
         __builtin_memcpy(local.speed + lane, &speed, sizeof(V));
     }
+}
+
+template <class V>
+OVC_INLINE void gather_by(const Ray* const* rays, RayLanes& lanes) {
+    constexpr int n = int(sizeof(V) / sizeof(double));
+    double* const columns[8] = {lanes.org[0], lanes.org[1], lanes.org[2], lanes.t_min,
+                                lanes.dir[0], lanes.dir[1], lanes.dir[2], lanes.t_max};
+    for (int lane = 0; lane < RayLanes::kCount; lane += n)
+        for (int column = 0; column < 8; column += n) {
+            V rows[n];
+            for (int i = 0; i < n; ++i)
+                __builtin_memcpy(&rows[i], reinterpret_cast<const double*>(rays[lane + i]) + column,
+                                 sizeof(V));
+            transpose(rows);
+            for (int i = 0; i < n; ++i) {
+                const bool is_t = column + i == 3 || column + i == 7;
+                const V values = is_t ? rows[i] + 0.0 : rows[i]; // -0 becomes 0
+                __builtin_memcpy(columns[column + i] + lane, &values, sizeof(V));
+                if (column + i == 3)
+                    __builtin_memcpy(lanes.from + lane, &values, sizeof(V));
+            }
+        }
 }
 
 } // namespace ovc

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// GlThread: hands one piece of work at a time over to the thread.
+// GlThread: hands pieces of work over to the thread, first come, first served.
 #include "gpu/gl/gl_thread.h"
 
 #include "gpu/driver/driver_threads.h"
@@ -43,37 +43,34 @@ GlThread::~GlThread() {
         thread_.join();
 }
 
-void GlThread::execute(const std::function<void(GlState&)>& work) {
-    Job job{&work};
-    post(job, [] {});
-    wait_for(job, [] {});
-    rethrow(job);
+void GlThread::execute(std::function<void(GlState&)> work) {
+    Job job;
+    begin(job, std::move(work));
+    finish(job, [] {});
 }
 
-void GlThread::post(Job& job, const std::function<void()>& idle) {
-    turn_.lock_while([&] {
-        idle();
-        return true;
-    });
-    const std::lock_guard lock(mutex_);
-    job_ = &job;
+void GlThread::begin(Job& job, std::function<void(GlState&)> work) {
+    {
+        const std::lock_guard lock(mutex_);
+        assert(job.is_done_);
+        job.work_ = std::move(work);
+        job.thrown_ = {};
+        job.is_done_ = false;
+        jobs_.push_back(&job);
+    }
     changed_.notify_all();
 }
 
-/// Waits until the job is done, and calls idle() now and then.
-void GlThread::wait_for(const Job& job, const std::function<void()>& idle) {
+void GlThread::finish(Job& job, const std::function<void()>& idle) {
     constexpr std::chrono::milliseconds kBetweenCalls(10);
     std::unique_lock lock(mutex_);
-    while (!changed_.wait_for(lock, kBetweenCalls, [&] { return job.done; })) {
+    while (!changed_.wait_for(lock, kBetweenCalls, [&] { return job.is_done_; })) {
         lock.unlock();
         idle();
         lock.lock();
     }
-}
-
-void GlThread::rethrow(const Job& job) {
-    if (job.thrown)
-        std::rethrow_exception(job.thrown);
+    if (job.thrown_)
+        std::rethrow_exception(std::exchange(job.thrown_, {}));
 }
 
 Result<Done> GlThread::reopen(uint32_t generation) {
@@ -129,22 +126,23 @@ void GlThread::serve() {
     started_ = Done{};
     changed_.notify_all();
     while (true) {
-        changed_.wait(lock, [&] { return job_ || stop_; });
-        if (!job_)
+        changed_.wait(lock, [&] { return !jobs_.empty() || stop_; });
+        if (jobs_.empty())
             break;
+        Job& job = *jobs_.front();
         lock.unlock();
         std::exception_ptr thrown;
         forget_if_dead(state);
         try {
-            (*job_->work)(state);
+            job.work_(state);
         } catch (...) {
             thrown = std::current_exception();
         }
         lock.lock();
-        job_->thrown = thrown;
-        std::exchange(job_, nullptr)->done = true;
+        job.thrown_ = thrown;
+        job.is_done_ = true; // from here on it may be gone
+        jobs_.pop_front();
         changed_.notify_all();
-        turn_.unlock();
     }
 }
 

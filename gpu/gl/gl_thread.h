@@ -4,14 +4,15 @@
 #pragma once
 
 #include "core/system/parallel.h"
-#include "core/system/turn.h"
 #include "gpu/budget/shared_budget.h"
 #include "gpu/gl/debug_output.h"
 #include "gpu/gl/egl_context.h"
 #include "gpu/gl/kernel.h"
 
 #include <atomic>
+#include <cassert>
 #include <condition_variable>
+#include <deque>
 #include <exception>
 #include <functional>
 #include <memory>
@@ -63,22 +64,27 @@ public:
         }
     }
 
-    /// Runs work(GlState&) on the thread and meanwhile() here, which may call run() too. Waits for
-    /// both, and calls idle() here again and again while it waits.
-    template <class Work, class Meanwhile>
-    void run_beside(Work&& work, Meanwhile&& meanwhile, const std::function<void()>& idle) {
-        const std::function<void(GlState&)> function = [&](GlState& state) { work(state); };
-        Job job{&function};
-        post(job, idle);
-        try {
-            meanwhile();
-            wait_for(job, idle);
-        } catch (...) {
-            wait_for(job, [] {}); // the job refers to variables of this call
-            throw;
-        }
-        rethrow(job);
-    }
+    /// A piece of work that begin() hands to the thread. Whoever owns it waits for it before it
+    /// goes.
+    class Job {
+    public:
+        Job() = default;
+        Job(const Job&) = delete;
+        ~Job() { assert(is_done_); }
+
+    private:
+        friend class GlThread;
+        std::function<void(GlState&)> work_;
+        bool is_done_ = true;
+        std::exception_ptr thrown_{};
+    };
+
+    /// Has work(GlState&) run on the thread, behind all that was begun before, and returns at once.
+    /// The job is not under way.
+    void begin(Job& job, std::function<void(GlState&)> work);
+    /// Waits for a job that was begun, and calls idle() here again and again meanwhile. An
+    /// exception that its work throws is thrown here.
+    void finish(Job& job, const std::function<void()>& idle);
 
     const DeviceInfo& info() const { return info_; }
 
@@ -98,16 +104,8 @@ private:
           log_(std::move(log)),
           limits_(limits),
           budget_(limits.gpu_memory_bytes) {}
-    struct Job {
-        const std::function<void(GlState&)>* work;
-        bool done = false;
-        std::exception_ptr thrown{};
-    };
 
-    void execute(const std::function<void(GlState&)>& work);
-    void post(Job& job, const std::function<void()>& idle);
-    void wait_for(const Job& job, const std::function<void()>& idle);
-    static void rethrow(const Job& job);
+    void execute(std::function<void(GlState&)> work);
     void serve();
     static void forget_if_dead(GlState& state);
 
@@ -115,10 +113,9 @@ private:
     const LogSink log_;
     const DeviceLimits limits_;
     SharedBudget budget_;
-    Turn turn_;        // of the callers; the thread gives it back when it has done their work
-    std::mutex mutex_; // guards the members below
+    std::mutex mutex_; // guards the members below, and jobs
     std::condition_variable changed_;
-    Job* job_ = nullptr; // waiting or under way
+    std::deque<Job*> jobs_; // waiting, and in front the one under way
     std::optional<Result<Done>> started_;
     bool stop_ = false;
     std::atomic<uint32_t> generation_{0};

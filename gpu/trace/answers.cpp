@@ -5,7 +5,6 @@
 #include "core/system/parallel.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cassert>
 
 namespace ovc {
@@ -38,15 +37,25 @@ void AnswerPixels::draw(size_t rays) const {
     glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 
-void AnswerPixels::read(std::span<Answer> answers) {
-    pixels_.resize(whole_blocks(answers.size()));
+/// Makes room, and clears none of it.
+static void grow(std::vector<uint32_t>& plane, size_t size) {
+    plane.resize(std::max(plane.size(), size));
+}
+
+void AnswerPixels::read(Answers& answers, size_t rays) {
+    pixels_.resize(whole_blocks(rays));
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
     glReadPixels(0, 0, OVC_ROW_RAYS, GLsizei(pixels_.size() / OVC_ROW_RAYS), GL_RGBA_INTEGER,
                  GL_UNSIGNED_INT, pixels_.data());
-    parallel_for(answers.size(), kAnswerGrain, [&](size_t first, size_t last) {
+    grow(answers.names, rays);
+    for (std::vector<uint32_t>& plane : answers.more)
+        grow(plane, rays);
+    parallel_for(rays, kAnswerGrain, [&](size_t first, size_t last) {
         for (size_t ray = first; ray < last; ++ray) {
             const uvec4& p = pixels_[pixel_of(ray)];
-            answers[ray] = {{p.x, p.y, p.z}, p.w, p.z};
+            answers.names[ray] = p.w | OVC_SAYS_MORE;
+            for (int k = 0; k < 3; ++k)
+                answers.more[size_t(k)][ray] = p[k];
         }
     });
 }
@@ -60,7 +69,7 @@ AnswerWords::AnswerWords(Ledger& ledger, uint32_t rays)
 }
 
 void AnswerWords::fill_plane(int number, size_t rays, uint32_t word) const {
-    assert(number >= 0 && size_t(number) < planes_.size() && rays <= rays_);
+    assert(number >= 0 && number < 4 && rays <= rays_);
     glClearNamedBufferSubData(
         buffer_.id(), GL_R32UI, GLintptr(uint64_t(number) * rays_ * sizeof(word)),
         GLsizeiptr(rays * sizeof(word)), GL_RED_INTEGER, GL_UNSIGNED_INT, &word);
@@ -76,40 +85,21 @@ void AnswerWords::dispatch(GLuint program, size_t rays, size_t group_rays) const
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 
-std::span<const uint32_t> AnswerWords::plane(int number, size_t first, size_t rays) {
-    assert(number >= 0 && size_t(number) < planes_.size() && first + rays <= rays_);
-    std::vector<uint32_t>& words = planes_[size_t(number)];
-    words.resize(rays);
-    glGetNamedBufferSubData(buffer_.id(),
-                            GLintptr((uint64_t(number) * rays_ + first) * sizeof(uint32_t)),
-                            GLsizeiptr(rays * sizeof(uint32_t)), words.data());
-    return words;
+void AnswerWords::read_plane(int number, size_t slots, std::vector<uint32_t>& to) const {
+    assert(number >= 0 && number < 4 && slots <= rays_);
+    grow(to, slots);
+    glGetNamedBufferSubData(buffer_.id(), GLintptr(uint64_t(number) * rays_ * sizeof(uint32_t)),
+                            GLsizeiptr(slots * sizeof(uint32_t)), to.data());
 }
 
-void AnswerWords::read(std::span<Answer> answers, size_t first_ray) {
-    const std::span<const uint32_t> names = plane(0, first_ray, answers.size());
-    std::atomic<uint32_t> seen = 0;
-    parallel_for(answers.size(), kAnswerGrain, [&](size_t first, size_t last) {
-        uint32_t all = 0;
-        for (size_t ray = first; ray < last; ++ray) {
-            all |= names[ray];
-            answers[ray] = {{OVC_NO_TRIANGLE, OVC_NO_TRIANGLE, OVC_NO_LEAF},
-                            names[ray] & ~OVC_SAYS_MORE,
-                            OVC_NO_LEAF};
-        }
-        seen |= all;
-    });
-    if ((seen & OVC_SAYS_MORE) == 0)
-        return;
-    const std::array more{plane(1, first_ray, answers.size()), plane(2, first_ray, answers.size()),
-                          plane(3, first_ray, answers.size())};
-    parallel_for(answers.size(), kAnswerGrain, [&](size_t first, size_t last) {
-        for (size_t ray = first; ray < last; ++ray)
-            if (names[ray] & OVC_SAYS_MORE) {
-                answers[ray].words = {more[0][ray], more[1][ray], more[2][ray]};
-                answers[ray].where = more[2][ray];
-            }
-    });
+void AnswerWords::read(Answers& answers, size_t slots) const {
+    read_plane(0, slots, answers.names);
+    uint32_t all = 0;
+    for (size_t i = 0; i < slots; ++i)
+        all |= answers.names[i];
+    if (all & OVC_SAYS_MORE)
+        for (int k = 0; k < 3; ++k)
+            read_plane(1 + k, slots, answers.more[size_t(k)]);
 }
 
 } // namespace ovc

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The buffers in which a pass leaves its answers: pixels of a texture (the fragment kernel) or
-// words of a buffer (the compute kernel). shaders/layout.h defines their layouts.
+// The answers of a pass, and the buffers in which it leaves them: pixels of a texture (the fragment
+// kernel) or words of a buffer (the compute kernel). shaders/layout.h defines their layouts.
 #pragma once
 
 #include "core/vec.h"
 #include "gpu/gl/gl_object.h"
+#include "gpu/trace/local_ray.h"
 #include "shaders/layout.h"
 
 #include <array>
@@ -34,6 +35,40 @@ struct Answer {
     double v() const { return (words[2] >> 16) / 65535.0; }
 };
 
+/// The answers of a pass, in planes as the compute kernel writes them. Most say no more than a
+/// name.
+struct Answers {
+    std::vector<uint32_t> names;               // prim, with OVC_SAYS_MORE where `more` counts
+    std::array<std::vector<uint32_t>, 3> more; // x, y, z
+    std::span<const LocalTime> times;          // fast precision: of each ray; not owned
+
+    Answer operator[](size_t i) const {
+        const uint32_t prim = names[i] & ~OVC_SAYS_MORE;
+        if (prim == names[i])
+            return {{OVC_NO_TRIANGLE, OVC_NO_TRIANGLE, OVC_NO_LEAF}, prim, OVC_NO_LEAF};
+        Answer answer{{more[0][i], more[1][i], more[2][i]}, prim, more[2][i]};
+        if (!times.empty() && prim < OVC_MAX_TRIANGLES)
+            come_back(answer, times[i]);
+        return answer;
+    }
+    /// Gives ray i the answer of slot `from`.
+    void move(size_t i, size_t from) {
+        names[i] = names[from];
+        if (names[i] & OVC_SAYS_MORE)
+            for (std::vector<uint32_t>& plane : more)
+                plane[i] = plane[from];
+    }
+
+private:
+    /// Converts a hit of fast precision to the form of Answer. The kernel gives t in the frame of
+    /// the top-level tree, then u and v.
+    static void come_back(Answer& answer, const LocalTime& time) {
+        const double local = std::bit_cast<float>(answer.words[0]);
+        const auto t = std::bit_cast<uint64_t>(time.enter + local / time.speed);
+        answer.words = {uint32_t(t), uint32_t(t >> 32), answer.words[1]};
+    }
+};
+
 /// Bytes of an answer on the GPU.
 inline constexpr uint64_t kAnswerBytes = 16;
 
@@ -58,7 +93,8 @@ public:
     /// False where the driver cannot draw to such a texture.
     bool complete() const { return framebuffer_.complete(); }
     void draw(size_t rays) const;
-    void read(std::span<Answer> answers);
+    /// Reads the answers of the first rays.
+    void read(Answers& answers, size_t rays);
 
 private:
     gl::Texture2D texture_;
@@ -73,17 +109,16 @@ public:
     AnswerWords(Ledger& ledger, uint32_t rays);
     /// group_rays: rays of a work group, or the max number with ray refill.
     void dispatch(GLuint program, size_t rays, size_t group_rays) const;
-    /// Reads the answers of the rays from `first_ray` on.
-    void read(std::span<Answer> answers, size_t first_ray = 0);
+    /// Reads the answers of the first slots.
+    void read(Answers& answers, size_t slots) const;
 
 private:
     void fill_plane(int number, size_t rays, uint32_t word) const;
-    std::span<const uint32_t> plane(int number, size_t first, size_t rays);
+    void read_plane(int number, size_t slots, std::vector<uint32_t>& to) const;
 
     uint32_t rays_;
     gl::Buffer buffer_;
     gl::BufferTexture texture_;
-    std::array<std::vector<uint32_t>, 4> planes_;
 };
 
 } // namespace ovc

@@ -79,7 +79,7 @@ protected:
         std::vector<RayState> states(some.size());
         for (size_t j = 0; j < some.size(); ++j)
             states[j] = rays[some[j]].state();
-        std::vector<Answer> answers(states.size());
+        Answers answers;
         gl->run([&](GlState&) {
             SentRays sent = send(tracer->form(), states);
             ASSERT_TRUE(tracer->submit(sent));
@@ -87,8 +87,9 @@ protected:
         });
         for (size_t j = 0; j < some.size(); ++j) {
             UnderWay& way = rays[some[j]];
-            take_in(way, answers[j]);
-            const uint32_t key = answers[j].where;
+            const Answer answer = answers[j];
+            take_in(way, answer);
+            const uint32_t key = answer.where;
             if (key == OVC_NO_LEAF)
                 continue;
             ASSERT_LT(leaf_of(key), pages.size());

@@ -3,7 +3,9 @@
 #include "gpu/trace/sent_rays.h"
 
 #include <algorithm>
+#include <bit>
 #include <cassert>
+#include <cstring>
 #include <type_traits>
 
 namespace ovc {
@@ -32,16 +34,6 @@ void set_none(ResumedRay& ray) {
     ray = {no_ray(), 0, {}};
 }
 
-bool is_any_hit(const RayState& ray) {
-    return ray.any_hit();
-}
-bool is_any_hit(const LocalRay& ray) {
-    return (ray.asks & OVC_RAY_ANY_HIT) != 0;
-}
-bool is_any_hit(const ResumedRay& ray) {
-    return is_any_hit(ray.ray);
-}
-
 void write(LocalRay& to, const LocalRay& ray, uint32_t) {
     to = ray;
 }
@@ -62,11 +54,15 @@ LanesFrame lanes_frame(const Leaf& leaf) {
 }
 
 /// Returns the ray of a lane as local_ray() does.
-LocalRay ray_of(const LocalLanes& local, int lane, uint32_t skip, uint32_t asks) {
-    return {{local.org[0][lane], local.org[1][lane], local.org[2][lane]},
-            local.t_end[lane],
-            {local.dir[0][lane], local.dir[1][lane], local.dir[2][lane]},
-            std::min<uint32_t>(skip, OVC_SKIPS_NONE) | (asks & OVC_RAY_ANY_HIT)};
+LocalRay ray_of(const LocalRows& local, int lane) {
+    static_assert(sizeof(local.rows[0]) == sizeof(LocalRay) &&
+                  offsetof(LocalRay, org) == LocalRows::kOrg * sizeof(float) &&
+                  offsetof(LocalRay, t_end) == LocalRows::kEnd * sizeof(float) &&
+                  offsetof(LocalRay, dir) == LocalRows::kDir * sizeof(float) &&
+                  offsetof(LocalRay, asks) == LocalRows::kWord * sizeof(float));
+    LocalRay ray;
+    std::memcpy(static_cast<void*>(&ray), local.rows[lane], sizeof(ray));
+    return ray;
 }
 
 } // namespace
@@ -91,6 +87,7 @@ void SentRays::reset(const RayForm& form, size_t rays) {
         frame_ = lanes_frame(*form.scene);
     }
     parted_.clear();
+    all_any_hit_ = false;
     std::visit([&](auto& all) { all.resize(std::max(all.size(), whole_blocks(rays))); }, rays_);
     times_.resize(form.keeps_times ? whole_blocks(rays) : 0);
     set_size(rays);
@@ -109,9 +106,14 @@ void SentRays::set_size(size_t rays) {
 
 size_t SentRays::put(size_t at, const RayStates& states, uint32_t which) {
     const bool in_lanes = form_.kind != RayForm::Kind::World && !form_.way_in;
-    LocalLanes local;
-    if (in_lanes)
-        to_frame(frame_, states.rays, local);
+    LocalRows local;
+    if (in_lanes) {
+        std::array<uint32_t, RayLanes::kCount> words;
+        for (size_t lane = 0; lane < words.size(); ++lane)
+            words[lane] = std::min<uint32_t>(states.skip[lane], OVC_SKIPS_NONE) |
+                          (states.asks[lane] & OVC_RAY_ANY_HIT);
+        to_frame(frame_, states.rays, words.data(), local);
+    }
     size_t i = at;
     const auto put_one = [&](auto& all, int lane) {
         const uint32_t skip = states.skip[size_t(lane)], asks = states.asks[size_t(lane)];
@@ -124,7 +126,7 @@ size_t SentRays::put(size_t at, const RayStates& states, uint32_t which) {
                 local_ray(*form_.scene, all[i].ray, OVC_NO_TRIANGLE, false, time);
         } else {
             write(all[i],
-                  in_lanes ? ray_of(local, lane, skip, asks)
+                  in_lanes ? ray_of(local, lane)
                            : local_ray(*form_.way_in, states.state(lane).ray, skip,
                                        (asks & OVC_RAY_ANY_HIT) != 0, time),
                   asks);
@@ -135,9 +137,8 @@ size_t SentRays::put(size_t at, const RayStates& states, uint32_t which) {
     };
     std::visit(
         [&](auto& all) {
-            for (int lane = 0; lane < RayLanes::kCount; ++lane)
-                if (which >> lane & 1)
-                    put_one(all, lane);
+            for (uint32_t lanes = which; lanes != 0; lanes &= lanes - 1)
+                put_one(all, std::countr_zero(lanes));
         },
         rays_);
     return i - at;
@@ -153,15 +154,6 @@ void SentRays::move_up(size_t to, size_t from, size_t count) {
     std::visit(move, rays_);
     if (form_.keeps_times)
         move(times_);
-}
-
-bool SentRays::all_any_hit() const {
-    return std::visit(
-        [&](const auto& all) {
-            return std::all_of(all.begin(), all.begin() + ptrdiff_t(size_),
-                               [](const auto& ray) { return is_any_hit(ray); });
-        },
-        rays_);
 }
 
 /// Returns ray i in the frame of the scene or of the top-level tree.
@@ -219,6 +211,7 @@ SentRays SentRays::first(size_t rays) const {
     assert(parted_.empty() && rays <= size_);
     SentRays some;
     some.reset(form_, rays);
+    some.all_any_hit_ = all_any_hit_;
     std::visit(
         [&](const auto& all) {
             auto& copy = std::get<std::remove_cvref_t<decltype(all)>>(some.rays_);
@@ -233,12 +226,14 @@ SentRays SentRays::first(size_t rays) const {
 SentRays send(const RayForm& form, std::span<const RayState> states) {
     SentRays sent;
     sent.reset(form, states.size());
+    sent.set_all_any_hit(std::ranges::all_of(states, &RayState::any_hit));
     for (size_t i = 0; i < states.size(); i += RayLanes::kCount) {
         const size_t count = std::min<size_t>(RayLanes::kCount, states.size() - i);
         RayStates some;
+        some.set(count, 0, [&](size_t lane) { return &states[i + lane].ray; });
         for (size_t lane = 0; lane < count; ++lane) {
-            const RayState& state = states[i + lane];
-            some.set(int(lane), state.ray, state.skip, state.asks);
+            some.skip[lane] = states[i + lane].skip;
+            some.asks[lane] = states[i + lane].asks;
         }
         sent.put(i, some, RayLanes::first(count));
     }

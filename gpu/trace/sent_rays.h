@@ -36,16 +36,17 @@ struct RayStates {
     RayLanes rays;
     std::array<uint32_t, RayLanes::kCount> skip, asks; // as in RayState
 
-    /// asks: as RayState has it.
-    void set(int lane, const Ray& ray, uint32_t skip_number, uint32_t asks_for) {
-        for (int axis = 0; axis < 3; ++axis) {
-            rays.org[axis][lane] = ray.org[axis];
-            rays.dir[axis][lane] = ray.dir[axis];
-        }
-        rays.t_min[lane] = rays.from[lane] = ray.t_min;
-        rays.t_max[lane] = ray.t_max;
-        skip[size_t(lane)] = skip_number;
-        asks[size_t(lane)] = asks_for;
+    /// Sets the first `count` lanes, 1 or more, to the rays at(lane), which skip nothing. The
+    /// addresses are those of rays, which are read at once. asks: as RayState has it.
+    template <class At>
+    void set(size_t count, uint32_t asks_for, At&& at) {
+        std::array<const Ray*, RayLanes::kCount> all;
+        all.fill(at(0));
+        for (size_t lane = 1; lane < count; ++lane)
+            all[lane] = at(lane);
+        gather(all.data(), rays);
+        skip.fill(OVC_NO_TRIANGLE);
+        asks.fill(asks_for);
     }
     RayState state(int lane) const;
 };
@@ -76,7 +77,9 @@ public:
     void set_size(size_t rays);
     size_t size() const { return size_; }
 
-    bool all_any_hit() const;
+    /// Whether all rays ask if anything is hit, as whoever put them says.
+    bool all_any_hit() const { return all_any_hit_; }
+    void set_all_any_hit(bool all) { all_any_hit_ = all; }
     /// Whether rays suit packets (gpu/trace/packets.h).
     bool are_coherent() const;
     /// Parts packets, which are not parted yet; there are at most `most` slots. Returns whether
@@ -101,6 +104,7 @@ private:
     RayForm form_;
     LanesFrame frame_;
     size_t size_ = 0;
+    bool all_any_hit_ = false;
     /// In whole blocks.
     std::variant<std::vector<LocalRay>, std::vector<ResumedRay>, std::vector<RayState>> rays_;
     std::vector<LocalTime> times_;

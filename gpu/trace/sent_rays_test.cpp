@@ -3,6 +3,7 @@
 // width.
 #include "gpu/trace/sent_rays.h"
 
+#include "core/ray_span.h"
 #include "gpu/frame/portal.h"
 #include "kdtree/restart.h"
 #include "kdtree/test_soups.h"
@@ -11,6 +12,7 @@
 
 #include <cstring>
 #include <limits>
+#include <numeric>
 
 namespace ovc {
 namespace {
@@ -40,8 +42,8 @@ const double kOdd[] = {0,     -0.0,  1,         -1,         2.5,  1e-300, 1e-310
 
 RayStates eight(std::span<const Ray> rays) {
     RayStates states{};
-    for (int lane = 0; lane < RayLanes::kCount; ++lane)
-        states.set(lane, rays[size_t(lane)], uint32_t(lane), 0);
+    states.set(RayLanes::kCount, 0, [&](size_t lane) { return &rays[lane]; });
+    std::iota(states.skip.begin(), states.skip.end(), 0u);
     return states;
 }
 
@@ -115,22 +117,37 @@ TEST(RayLanes, AreTheSameByEveryWidthOfVectors) {
     const LanesFrame frame{LanesBox({dvec3(-1), dvec3(1)}), {0.1, 0.2, 0.3}, 0.7, 1e6, -1, -2};
     for (size_t i = 0; i < rays.size(); i += RayLanes::kCount) {
         const RayStates states = eight(std::span(rays).subspan(i));
-        LocalLanes first;
-        ways_to_frame()[0](frame, states.rays, first);
+        LocalRows first;
+        ways_to_frame()[0](frame, states.rays, states.skip.data(), first);
         for (const ToFrame way : ways_to_frame()) {
-            LocalLanes local;
-            way(frame, states.rays, local);
+            LocalRows local;
+            way(frame, states.rays, states.skip.data(), local);
             for (int lane = 0; lane < RayLanes::kCount; ++lane) {
-                ASSERT_EQ(local.t_end[lane], first.t_end[lane]);
-                if (!(local.t_end[lane] >= 0))
-                    continue;
-                for (int axis = 0; axis < 3; ++axis) {
-                    ASSERT_EQ(local.org[axis][lane], first.org[axis][lane]);
-                    ASSERT_EQ(local.dir[axis][lane], first.dir[axis][lane]);
+                ASSERT_EQ(local.rows[lane][LocalRows::kEnd], first.rows[lane][LocalRows::kEnd]);
+                if (local.rows[lane][LocalRows::kEnd] >= 0) {
+                    ASSERT_EQ(std::memcmp(local.rows[lane], first.rows[lane], 32), 0);
                 }
             }
         }
     }
+}
+
+TEST(RayLanes, AreGatheredAsTheyAreByEveryWidthOfVectors) {
+    const std::vector<Ray> rays = rays_with(kOdd, 800);
+    const RaySpan read(rays); // with 0 for -0
+    for (size_t i = 0; i < rays.size(); i += RayLanes::kCount)
+        for (const Gather way : ways_to_gather()) {
+            std::array<const Ray*, RayLanes::kCount> some;
+            for (size_t lane = 0; lane < some.size(); ++lane)
+                some[lane] = &rays[i + lane];
+            RayStates states;
+            way(some.data(), states.rays);
+            for (size_t lane = 0; lane < some.size(); ++lane) {
+                const Ray ray = states.state(int(lane)).ray, expected = read[i + lane];
+                ASSERT_EQ(std::memcmp(&ray, &expected, sizeof(ray)), 0) << i + lane;
+                ASSERT_EQ(std::memcmp(&states.rays.t_min[lane], &expected.t_min, 8), 0);
+            }
+        }
 }
 
 TEST(SentRays, AreThoseOfABlockWithoutHoles) {

@@ -10,7 +10,6 @@
 #include "shaders/layout.h"
 
 #include <algorithm>
-#include <bit>
 #include <cassert>
 #include <utility>
 
@@ -271,20 +270,6 @@ RayForm Tracer::form() const {
     return {kind, &scene_, top_.way_in ? &*top_.way_in : nullptr, !options_.certify};
 }
 
-/// Converts hits of fast precision to the form of Answer. The kernel gives t in the frame of the
-/// top-level tree, then u and v.
-void Tracer::come_back(std::span<Answer> answers) const {
-    const std::span<const LocalTime> times = sent_->times();
-    assert(times.size() >= answers.size());
-    for (size_t i = 0; i < answers.size(); ++i) {
-        if (answers[i].prim >= OVC_MAX_TRIANGLES)
-            continue;
-        const double local = std::bit_cast<float>(answers[i].words[0]);
-        const auto t = std::bit_cast<uint64_t>(times[i].enter + local / times[i].speed);
-        answers[i].words = {uint32_t(t), uint32_t(t >> 32), answers[i].words[1]};
-    }
-}
-
 /// Returns how many words the kernel's stack has.
 uint32_t Tracer::stack_words(const KernelVariant& variant) const {
     const bool is_short = variant.register_words > 0 && !long_stacks_;
@@ -388,27 +373,25 @@ std::vector<uint32_t> Tracer::take_active() {
     return active;
 }
 
-void Tracer::read(std::span<Answer> answers) {
+void Tracer::read(Answers& answers) {
     if (words_)
-        words_->read(answers);
+        words_->read(answers, sent_->slots());
     else
-        pixels_->read(answers);
-    if (const std::span<const Parted> parted = sent_->parted(); !parted.empty()) {
-        parted_answers_.resize(sent_->slots() - sent_->size());
-        words_->read(parted_answers_, sent_->size());
-        for (const auto& [ray, slot] : parted)
-            answers[ray] = parted_answers_[slot - sent_->size()];
-    }
+        pixels_->read(answers, sent_->size());
+    for (const auto& [ray, slot] : sent_->parted())
+        answers.move(ray, slot);
+    answers.times = options_.certify ? std::span<const LocalTime>() : sent_->times();
     if (!device_.is_software)
         kernel_seconds_ += time_.seconds();
 }
 
 /// Whether the kernel gave up many rays, which matters because doubles decide a ray slower than a
 /// pass does.
-bool Tracer::lost_many(std::span<const Answer> answers) {
-    const auto lost = std::count_if(answers.begin(), answers.end(),
-                                    [](const Answer& a) { return a.prim == OVC_CAPPED; });
-    return size_t(lost) > answers.size() / kMaxLostShare;
+bool Tracer::lost_many(const Answers& answers) const {
+    const auto lost =
+        std::count_if(answers.names.begin(), answers.names.begin() + ptrdiff_t(sent_->size()),
+                      [](uint32_t name) { return (name & ~OVC_SAYS_MORE) == OVC_CAPPED; });
+    return size_t(lost) > sent_->size() / kMaxLostShare;
 }
 
 /// Makes later kernels give up fewer rays: first by a stack for all words, then by giving each ray
@@ -419,8 +402,7 @@ bool Tracer::go_on_longer() {
     return variant_.refill && !std::exchange(never_refills_, true);
 }
 
-Result<Done> Tracer::collect(std::span<Answer> answers) {
-    assert(answers.size() == sent_->size());
+Result<Done> Tracer::collect(Answers& answers) {
     read(answers);
     while (lost_many(answers) && go_on_longer()) {
         // If all pages fit they stay in place. Otherwise pages may have been evicted since the
@@ -431,8 +413,6 @@ Result<Done> Tracer::collect(std::span<Answer> answers) {
             return ok;
         read(answers);
     }
-    if (!options_.certify)
-        come_back(answers);
     return check_gl("reading the answers of a pass");
 }
 

@@ -122,8 +122,9 @@ public:
     void begin_to_compile(const KernelVariant& variant);
     bool is_ready(const KernelVariant& variant) const;
 
-    /// Waits for the answers of the pass that was submitted. answers: as many as its rays.
-    Result<Done> collect(std::span<Answer> answers);
+    /// Waits for the answers of the pass that was submitted. In fast precision they refer to its
+    /// rays.
+    Result<Done> collect(Answers& answers);
 
     /// The seconds that the kernel took in the pass that was collected last, without the transfer
     /// of rays and answers: by the device's clock, or for a software renderer by DriverThreads.
@@ -145,7 +146,6 @@ private:
     bool has_portals() const { return !top_.portals.empty(); }
     /// Whether rays of the pass may have to wait for a page.
     bool may_wait() const { return !all_fit_; }
-    void come_back(std::span<Answer> answers) const;
     ShaderConfig shader_config(const KernelVariant& variant) const;
     Result<Done> make_answers();
     bool packs(const KernelVariant& variant) const {
@@ -153,8 +153,8 @@ private:
     }
     uint32_t stack_words(const KernelVariant& variant) const;
     Result<Done> launch();
-    void read(std::span<Answer> answers);
-    static bool lost_many(std::span<const Answer> answers);
+    void read(Answers& answers);
+    bool lost_many(const Answers& answers) const;
     bool go_on_longer();
     void say_where(uint32_t leaf);
     void upload_top_level();
@@ -179,7 +179,6 @@ private:
     uint32_t stack_depth_;     // words with which no ray is lost
     uint32_t max_slots_;       // of a pass
     bool packets_ = false;     // the kernel takes rays two at a time
-    std::vector<Answer> parted_answers_;
     gl::Buffer ray_buffer_;
     gl::BufferTexture rays_;
     std::optional<AnswerPixels> pixels_; // of the fragment kernel

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // OnePass: answers a query where all pages are resident, so that one pass of the kernel answers a
-// ray. Beside the pass of one part of the rays, the part before is resolved and the next one is
-// made ready.
+// ray. While one part of the rays is with the kernel and the next one waits for it, the part before
+// is resolved and the one behind is made ready, so that the kernel never waits for the host.
 #pragma once
 
 #include "plugin/two_level/pass_runner.h"
@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <cassert>
 #include <numeric>
-#include <utility>
 #include <vector>
 
 namespace ovc {
@@ -26,59 +25,63 @@ public:
 
     Result<Done> run() {
         assert(passes_.all_resident());
-        Batch* now = &passes_.batches()[0];
-        Batch* other = &passes_.batches()[1];
-        other->rays.clear();
-        begin(*now);
+        const PassRunner::Scope scope(passes_);
+        auto& batches = passes_.batches();
+        size_t begun = 0, finished = 0; // passes
+        const auto begin_next = [&] {
+            Batch& next = batches[begun % batches.size()];
+            fill(next);
+            if (next.rays.empty())
+                return;
+            passes_.begin_pass(next, {});
+            ++begun;
+        };
+        begin_next();
+        begin_next();
         size_t traced = 0;
-        while (!now->rays.empty()) {
+        while (finished < begun) {
             if (Result<Done> asked = watch_.go_on(traced, query_.rays.size()); !asked)
                 return asked;
-            const size_t begun = next_;
-            const Result<size_t> moved = passes_.pass(*now, {}, [&] {
-                resolve(*other);
-                begin(*other);
-            });
-            if (!moved)
-                return moved.error();
-            traced = begun;
-            std::swap(now, other);
+            Batch& done = batches[finished++ % batches.size()];
+            if (const Result<size_t> passed = passes_.finish_pass(done); !passed)
+                return passed.error();
+            begin_next();
+            resolve(done);
+            traced = size_t(done.rays.back()) + 1;
         }
-        resolve(*other);
         return Done{};
     }
 
 private:
-    /// Fills the batch with the next rays of the query that the kernel is to be asked about, or
-    /// with none where all have begun.
-    void begin(Batch& batch) {
+    /// Fills the batch with the next rays of the query that the kernel is to be asked about; with
+    /// none where all have begun.
+    void fill(Batch& batch) {
         batch.rays.clear();
         while (batch.rays.empty() && next_ < query_.rays.size())
-            begin_part(batch);
+            fill_part(batch);
     }
 
     void resolve(const Batch& batch) {
         parallel_for(batch.rays.size(), kRaysPerTask, [&](size_t from, size_t to) {
             resolver_.resolve(
-                std::span(batch.rays).subspan(from, to - from),
-                std::span(batch.answers).subspan(from, to - from), [](auto&&...) { return true; },
-                [](auto&&...) {}); // there is no other page
+                std::span(batch.rays).subspan(from, to - from), batch.answers, from,
+                [](auto&&...) { return true; }, [](auto&&...) {}); // there is no other page
         });
     }
 
-    void begin_part(Batch& batch) {
+    void fill_part(Batch& batch) {
         const size_t part = passes_.part_rays(query_.rays.size());
         const size_t first = next_, count = std::min(part, query_.rays.size() - first);
         const size_t blocks = (count + kRaysPerTask - 1) / kRaysPerTask;
         // Each block writes its rays from its own beginning, then all are moved together: in order
         // and without holes, whichever thread takes which block.
         batch.rays.resize(count);
-        std::iota(batch.rays.begin(), batch.rays.end(), uint32_t(first));
         batch.make_room(passes_.form());
+        batch.sent.set_all_any_hit(Query::kAnyHit);
         block_rays_.resize(blocks);
         parallel_for(blocks, 1, [&](size_t from, size_t to) {
             for (size_t b = from; b < to; ++b)
-                block_rays_[b] = begin_block(batch, b * kRaysPerTask);
+                block_rays_[b] = fill_block(batch, first, b * kRaysPerTask);
         });
         size_t asked = 0;
         for (size_t b = 0; b < blocks; ++b) {
@@ -93,11 +96,12 @@ private:
         next_ += count;
     }
 
-    /// Begins the rays of the block at `first`, and writes those that the kernel is to be asked
-    /// about from there on; returns how many.
-    size_t begin_block(Batch& batch, size_t first) {
+    /// Begins the rays of the block at the place `first` of the part whose first ray is `part`, and
+    /// writes those that the kernel is to be asked about from that place on; returns how many.
+    size_t fill_block(Batch& batch, size_t part, size_t first) {
         const size_t count = std::min(kRaysPerTask, batch.rays.size() - first);
         const std::span<uint32_t> rays = std::span(batch.rays).subspan(first, count);
+        std::iota(rays.begin(), rays.end(), uint32_t(part + first));
         size_t asked = 0;
         in_lanes(rays, [&](std::span<const uint32_t> some, size_t) {
             const RayStates states = resolver_.states(some);

@@ -170,7 +170,8 @@ Result<Done> PassRunner::update(const MemoryPlan& plan, const PageChanges& chang
 
 void PassRunner::purge() {
     share_.close();
-    batches_ = {};
+    for (Batch& batch : batches_)
+        batch.clear();
 }
 
 void PassRunner::close() {
@@ -291,37 +292,44 @@ void PassRunner::tune(GlState& state, SentRays& rays, const PassCost& pass) {
     state.tuning->after_pass(kind, pass, limits, trials);
 }
 
-Result<size_t> PassRunner::pass(Batch& batch, std::span<const uint32_t> wanted,
-                                const std::function<void()>& meanwhile) {
+void PassRunner::begin_pass(Batch& batch, std::span<const uint32_t> wanted) {
+    assert(tracer_ && !batch.rays.empty() && batch.rays.size() <= plan_.batch_rays);
+    assert(batch.sent.size() == batch.rays.size());
+    batch.result = {};
+    batch.is_under_way = true;
+    gl_.begin(batch.job, [this, &batch, pages = std::vector(wanted.begin(), wanted.end())](
+                             GlState& state) { trace(state, batch, pages); });
+}
+
+/// Runs the pass. Called on the context's thread.
+void PassRunner::trace(GlState& state, Batch& batch, std::span<const uint32_t> wanted) {
+    PassResult& result = batch.result;
     const size_t count = batch.rays.size();
-    assert(tracer_ && count > 0 && count <= plan_.batch_rays);
-    assert(batch.sent.size() == count && batch.answers.size() >= count);
-    Result<Done> done = Done{};
-    bool alive = false;
-    Moved moved;
-    double seconds = 0, kernel_seconds = 0;
-    const auto work = [&](GlState& state) {
-        const Stopwatch watch;
-        alive = is_ours(state);
-        if (!alive)
-            return;
-        tracer_->use(variants(state));
-        done = tracer_->submit(batch.sent);
-        if (done)
-            moved = move_in(wanted);
-        if (done)
-            done = tracer_->collect(std::span(batch.answers).first(count));
-        alive = state.context.alive(); // a dead context leaves anything in the answers
-        seconds = watch.seconds();
-        kernel_seconds = tracer_->kernel_seconds();
-        if (alive && done && measures())
-            tune(state, batch.sent, {count, kernel_seconds, seconds});
-    };
-    gl_.run_beside(work, meanwhile, [this] { tracing_.watch.keeps_on(); });
+    const Stopwatch watch;
+    if (!is_ours(state))
+        return;
+    tracer_->use(variants(state));
+    result.done = tracer_->submit(batch.sent);
+    if (result.done)
+        result.moved = move_in(wanted);
+    if (result.done)
+        result.done = tracer_->collect(batch.answers);
+    result.alive = state.context.alive(); // a dead context leaves anything in the answers
+    result.seconds = watch.seconds();
+    result.kernel_seconds = tracer_->kernel_seconds();
+    if (result.alive && result.done && measures())
+        tune(state, batch.sent, {count, result.kernel_seconds, result.seconds});
+}
+
+Result<size_t> PassRunner::finish_pass(Batch& batch) {
+    gl_.finish(batch.job, [this] { tracing_.watch.keeps_on(); });
+    batch.is_under_way = false;
+    const auto& [done, alive, moved, seconds, kernel_seconds] = batch.result;
     if (!alive)
         return lost();
     if (!done)
         return done.error();
+    const size_t count = batch.rays.size();
     ovc_statistics& statistics = tracing_.statistics;
     statistics.passes += 1;
     statistics.ray_visits += count;
@@ -331,6 +339,15 @@ Result<size_t> PassRunner::pass(Batch& batch, std::span<const uint32_t> wanted,
     statistics.pages_in += moved.pages;
     statistics.bytes_in += moved.bytes;
     return size_t(moved.pages);
+}
+
+void PassRunner::abandon() {
+    for (Batch& batch : batches_)
+        if (std::exchange(batch.is_under_way, false))
+            try {
+                gl_.finish(batch.job, [] {});
+            } catch (...) { // the call has failed already
+            }
 }
 
 std::vector<uint32_t> PassRunner::take_active() {

@@ -20,18 +20,32 @@
 
 namespace ovc {
 
+/// What a pass comes to.
+struct PassResult {
+    Result<Done> done = Done{};
+    bool alive = false; // the context is
+    Moved moved;
+    double seconds = 0, kernel_seconds = 0;
+};
+
 /// The rays of a pass, and their answers.
 struct Batch {
     std::vector<uint32_t> rays;       // their numbers in the query
     std::array<size_t, 3> of_waves{}; // the rays of each wave, which lie together
     SentRays sent;                    // the same rays
-    std::vector<Answer> answers;      // at least one per ray
+    Answers answers;                  // of its pass
+    GlThread::Job job;                // the pass
+    PassResult result;                // of the pass, once it is over
+    bool is_under_way = false;
 
-    /// Makes room in `sent` and `answers` for the rays.
-    void make_room(const RayForm& form) {
-        sent.reset(form, rays.size());
-        answers.resize(std::max(rays.size(), answers.size()));
+    /// Gives back the memory. No pass is under way.
+    void clear() {
+        rays = {};
+        sent = {};
+        answers = {};
     }
+    /// Makes room in `sent` for the rays.
+    void make_room(const RayForm& form) { sent.reset(form, rays.size()); }
 };
 
 class PassRunner {
@@ -64,11 +78,23 @@ public:
 
     /// How a pass wants its rays, within this use of the device.
     RayForm form() const { return tracer_->form(); }
-    /// Traces the rays of the batch (not empty, at most plan().batch_rays) in one pass; their
-    /// answers go into the batch. Beside the pass, pages of `wanted` move in, and meanwhile() runs
-    /// on this thread. Returns how many pages were moved. Error: the context is lost, or GL's.
-    Result<size_t> pass(Batch& batch, std::span<const uint32_t> wanted,
-                        const std::function<void()>& meanwhile);
+    /// Begins to trace the rays of the batch (not empty, at most plan().batch_rays) in one pass,
+    /// behind those that were begun before. Beside the pass, pages of `wanted` move in.
+    void begin_pass(Batch& batch, std::span<const uint32_t> wanted);
+    /// Waits for the pass of a batch, whose answers are in it then. Returns how many pages were
+    /// moved. Error: the context is lost, or GL's.
+    Result<size_t> finish_pass(Batch& batch);
+    /// When it goes, no pass is under way: it waits for those that a call which ends early has
+    /// begun, whatever they come to.
+    class Scope {
+    public:
+        explicit Scope(PassRunner& passes) : passes_(passes) {}
+        ~Scope() { passes_.abandon(); }
+        Scope(const Scope&) = delete;
+
+    private:
+        PassRunner& passes_;
+    };
 
     /// Opens a new context for the calls to come, and returns the error for the call under way.
     Error lost();
@@ -83,9 +109,9 @@ public:
     /// Returns how many of `rays` a pass takes, so that it keeps the device busy and leaves
     /// something to do beside it. At most plan().batch_rays.
     size_t part_rays(size_t rays) const;
-    /// Two batches, kept between calls, take turns: one is with the kernel, while the answers of
-    /// the other are resolved and it is filled again.
-    std::array<Batch, 2>& batches() { return batches_; }
+    /// Three batches, kept between calls, take turns: one is with the kernel and one waits for it,
+    /// while the answers of the third are resolved and it is filled again.
+    std::array<Batch, 3>& batches() { return batches_; }
 
     const MemoryPlan& plan() const { return plan_; }
     /// The bytes of GL buffers and textures that are alive. At any time.
@@ -104,6 +130,8 @@ private:
     bool measures() const;
     ChosenVariants variants(GlState& state) const;
     void tune(GlState& state, SentRays& rays, const PassCost& pass);
+    void trace(GlState& state, Batch& batch, std::span<const uint32_t> wanted);
+    void abandon();
     /// Whether the tracer's context is alive. Called on the context's thread.
     bool is_ours(const GlState& state) const {
         return state.generation == tracer_generation_ && state.context.alive();
@@ -118,7 +146,7 @@ private:
     std::unique_ptr<Tracer> tracer_; // made and destroyed on the thread of gl_
     std::atomic<uint64_t> gpu_bytes_{0};
     uint32_t tracer_generation_ = 0; // of the context that it was made in
-    std::array<Batch, 2> batches_;
+    std::array<Batch, 3> batches_;
     double seconds_a_ray_ = 1e-5; // of the pass before
     SharedBudget::Share share_;   // closes the tracer
 };

@@ -13,6 +13,7 @@
 #include "plugin/two_level/tracing.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <bit>
 #include <cassert>
@@ -90,8 +91,14 @@ public:
     RayStates states(std::span<const uint32_t> rays) const {
         constexpr uint32_t asks = Query::kAnyHit ? OVC_RAY_ANY_HIT : 0;
         RayStates states;
-        for (size_t lane = 0; lane < rays.size(); ++lane)
-            states.set(int(lane), query_.rays[rays[lane]], OVC_NO_TRIANGLE, asks);
+        struct Room { // not set where the rays are doubles
+            Room() {}
+            union {
+                std::array<Ray, RayLanes::kCount> rays;
+            };
+        } room;
+        states.set(rays.size(), asks,
+                   [&](size_t lane) { return query_.rays.address(rays[lane], room.rays[lane]); });
         if (query_.without.empty())
             return states;
         for (size_t lane = 0; lane < rays.size(); ++lane) {
@@ -106,17 +113,20 @@ public:
     /// Returns a bit for each of these rays, of which these are the states, about which the kernel
     /// is to be asked. This has answered the others.
     uint32_t begins(const RayStates& states, std::span<const uint32_t> rays) {
-        for (const uint32_t i : rays)
-            query_.set_miss(i);
         const uint32_t all = RayLanes::first(rays.size());
         const LanesAhead ahead = look_ahead(ahead_, states.rays);
         const uint32_t valid = ahead.valid & all;
-        invalid_ += uint64_t(std::popcount(all & ~valid));
+        const uint32_t begin = valid & ahead.walks & ahead.meets;
+        // Of whole answers each is entered, misses as well.
+        for (uint32_t none = are_whole_ ? all & ~begin : all; none != 0; none &= none - 1)
+            query_.set_miss(rays[size_t(std::countr_zero(none))]);
+        if (valid != all)
+            invalid_ += uint64_t(std::popcount(all & ~valid));
         // This comes before the clip: where double cannot walk, rounding may carry a ray past the
         // whole scene.
         for (uint32_t lost = valid & ~ahead.walks; lost != 0; lost &= lost - 1)
             fall_back(rays[size_t(std::countr_zero(lost))]);
-        return valid & ahead.walks & ahead.meets;
+        return begin;
     }
 
     /// Writes those of the states of these rays that have a bit in `which` to the places from `at`
@@ -129,14 +139,13 @@ public:
         return sent.put(at, states, which);
     }
 
-    /// Enters the kernel's answers, one per ray, as far as they are certain or exact arithmetic
-    /// decides them. takes(i, answer) -> bool is asked before; false leaves the answer alone.
-    /// go_on(i, key, limit) is called where a page that is not resident may hold a hit before
-    /// `limit`; key: that of the link that leads there.
+    /// Enters the kernel's answers from the `first` on, one per ray, as far as they are certain or
+    /// exact arithmetic decides them. takes(i, answer) -> bool is asked before; false leaves the
+    /// answer alone. go_on(i, key, limit) is called where a page that is not resident may hold a
+    /// hit before `limit`; key: that of the link that leads there.
     template <class Takes, class GoOn>
-    void resolve(std::span<const uint32_t> rays, std::span<const Answer> answers, Takes&& takes,
-                 GoOn&& go_on) {
-        assert(rays.size() == answers.size());
+    void resolve(std::span<const uint32_t> rays, const Answers& answers, size_t first,
+                 Takes&& takes, GoOn&& go_on) {
         if (!tracing_.watch.keeps_on())
             return;
         HitBatch<size_t> certain; // tagged with the index in `answers`
@@ -144,37 +153,40 @@ public:
         Decided decided;
         std::vector<InDoubt> in_doubt;
         const auto look = [&](size_t j) {
-            if (!resolve_one(rays[j], answers[j], decided, go_on))
-                in_doubt.push_back({rays[j], begin_of(rays[j], answers[j])});
+            const Answer answer = answers[first + j];
+            if (!resolve_one(rays[j], answer, decided, go_on))
+                in_doubt.push_back({rays[j], begin_of(rays[j], answer)});
         };
         const auto enter = [&](const Hit& hit, size_t j) {
             if (hit.t > exclusion(rays[j]).after.t)
-                enter_certain(rays[j], answers[j], hit, go_on);
+                enter_certain(rays[j], answers[first + j], hit, go_on);
             else
                 look(j);
         };
         const auto enter_nearest = [&](const Candidate& nearest, size_t j) {
-            if (answers[j].prim == OVC_ENDED && !nearest.hit.is_hit())
+            const Answer answer = answers[first + j];
+            if (answer.prim == OVC_ENDED && !nearest.hit.is_hit())
                 return look(j);
-            enter_resolved(rays[j], answers[j], nearest, limit_of(rays[j], nearest), decided,
-                           go_on);
+            enter_resolved(rays[j], answer, nearest, limit_of(rays[j], nearest), decided, go_on);
         };
         for (size_t j = 0; j < rays.size(); ++j) {
-            fetch_ahead(answers, j);
-            if (!takes(rays[j], answers[j]))
+            if (j + kAhead < rays.size())
+                fetch_ahead(answers, first + j + kAhead);
+            const Answer answer = answers[first + j];
+            if (!takes(rays[j], answer))
                 continue;
-            if (has_plain_candidates(rays[j], answers[j])) {
-                doubtful.add(query_.rays[rays[j]], exclusion(rays[j]).skip,
-                             candidates_of(answers[j]), scene_, j);
+            if (has_plain_candidates(rays[j], answer)) {
+                doubtful.add(query_.rays[rays[j]], exclusion(rays[j]).skip, candidates_of(answer),
+                             scene_, j);
                 if (!doubtful.has_room())
                     doubtful.finish(enter_nearest, look);
                 continue;
             }
-            if (!is_certain_hit(rays[j], answers[j])) {
+            if (!is_certain_hit(rays[j], answer)) {
                 look(j);
                 continue;
             }
-            const TriangleId id = scene_.seen(answers[j].prim, exclusion(rays[j]).skip);
+            const TriangleId id = scene_.seen(answer.prim, exclusion(rays[j]).skip);
             certain.add(query_.rays[rays[j]], scene_.soup.triangle(id), id, j);
             if (certain.full())
                 certain.finish(enter, look);
@@ -236,15 +248,18 @@ private:
     /// Returns ray i as the host gave it.
     PreparedRay prepared(uint32_t i) const { return PreparedRay(query_.rays[i], exclusion(i)); }
 
-    /// Fetches the triangles of an answer some way behind the j-th, which is to be resolved soon.
-    void fetch_ahead(std::span<const Answer> answers, size_t j) const {
-        constexpr size_t kAhead = 8;
-        if (j + kAhead >= answers.size() || !tracing_.options.certify ||
-            !names_candidates(answers[j + kAhead]))
+    static constexpr size_t kAhead = 8; // answers between fetching triangles and reading them
+    /// Fetches the triangles of an answer that is to be resolved soon.
+    void fetch_ahead(const Answers& answers, size_t j) const {
+        const uint32_t name = answers.names[j];
+        if ((name & OVC_SAYS_MORE) == 0) {
+            if (!Query::kAnyHit) // else the corners will not be read
+                fetch(name);
             return;
-        const Candidates found = candidates_of(answers[j + kAhead]);
-        if (Query::kAnyHit && !found.has_further())
-            return; // the corners will not be read
+        }
+        if (!tracing_.options.certify || !names_candidates(answers[j]))
+            return;
+        const Candidates found = candidates_of(answers[j]);
         fetch(found.certain);
         for (const uint32_t number : found.further)
             fetch(number);
@@ -259,13 +274,20 @@ private:
     /// Whether the answer names the nearest hit, and nothing is left to decide but t, u and v.
     bool is_certain_hit(uint32_t i, const Answer& answer) const {
         return !Query::kAnyHit && tracing_.options.certify && answer.prim < OVC_MAX_TRIANGLES &&
-               !candidates_of(answer).has_further() && !query_.was_hit(i);
+               !candidates_of(answer).has_further() && !was_hit(i);
+    }
+    /// Whether the ray was found to hit something before this answer.
+    bool was_hit(uint32_t i) const { return !are_whole_ && query_.was_hit(i); }
+    /// Enters that the ray hits nothing, unless that has been said when it began.
+    void enter_miss(uint32_t i) {
+        if (are_whole_)
+            query_.set_miss(i);
     }
 
     /// Whether the answer names several triangles, and nothing but these decides about the ray.
     bool has_plain_candidates(uint32_t i, const Answer& answer) const {
         return tracing_.options.certify && names_candidates(answer) &&
-               candidates_of(answer).has_further() && !query_.was_hit(i) &&
+               candidates_of(answer).has_further() && !was_hit(i) &&
                exclusion(i).after.is_before_all();
     }
 
@@ -311,8 +333,10 @@ private:
     template <class GoOn>
     bool resolve_candidates(uint32_t i, const Answer& answer, Decided& decided, GoOn&& go_on) {
         const Candidates found = candidates_of(answer);
-        if (found.is_miss())
+        if (found.is_miss()) {
+            enter_miss(i);
             return true;
+        }
         if (Query::kAnyHit && found.is_certain_hit() && query_.without.after.empty()) {
             query_.set(i, Hit{0, 0, 0, {0, 0}}); // the triangle is not kept
             return true;
@@ -320,10 +344,10 @@ private:
         const PreparedRay p = prepared(i);
         // A hit that was found before may lie behind something beyond the end of the ray.
         const bool was_ended = answer.prim == OVC_ENDED;
-        if (was_ended && (query_.was_hit(i) || !p.after.is_before_all()))
+        if (was_ended && (was_hit(i) || !p.after.is_before_all()))
             return false;
         Nearest nearest = scene_.nearest_of(p);
-        if (query_.was_hit(i))
+        if (was_hit(i))
             nearest.offer(scene_.soup.triangle(query_.hit(i).id), query_.hit(i).id);
         if (!found.offer_to(nearest, p, scene_) || (was_ended && !nearest.is_hit()))
             return false;
@@ -339,6 +363,8 @@ private:
         const bool hit = nearest.hit.is_hit();
         if (hit)
             enter_decided(i, nearest, decided);
+        else
+            enter_miss(i);
         if (answer.where != OVC_NO_LEAF && !(Query::kAnyHit && hit))
             go_on(i, answer.where, limit);
         if (candidates_of(answer).has_further()) // fall_back() counts the others
@@ -349,8 +375,10 @@ private:
     /// nearer. Returns false where it is not behind the place that the ray's hits lie behind.
     template <class GoOn>
     bool enter_fast(uint32_t i, const Answer& answer, GoOn&& go_on) {
-        if (answer.prim == OVC_MISS)
+        if (answer.prim == OVC_MISS) {
+            enter_miss(i);
             return true;
+        }
         Hit hit{answer.t(), answer.u(), answer.v(), scene_.numbers.id(answer.prim)};
         if (!scene_.top.portals.empty()) // its t was told in the frame of the scene
             hit = in_doubles(hit, query_.rays[i], scene_.soup.triangle(hit.id));

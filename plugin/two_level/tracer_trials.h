@@ -18,23 +18,19 @@ class TracerTrials final : public VariantTrials {
 public:
     /// rays: some of the pass that the tracer has collected last. The tracer outlives this.
     TracerTrials(Tracer& tracer, SentRays rays, LogSink log)
-        : tracer_(tracer),
-          rays_(std::move(rays)),
-          log_(std::move(log)),
-          answers_(whole_blocks(rays_.size())) {}
+        : tracer_(tracer), rays_(std::move(rays)), log_(std::move(log)) {}
 
     bool can_run(const KernelVariant& variant) override { return tracer_.can_run(variant); }
     void begin(const KernelVariant& variant) override { tracer_.begin_to_compile(variant); }
     bool is_ready(const KernelVariant& variant) override { return tracer_.is_ready(variant); }
 
     std::optional<double> time(const KernelVariant& variant) override {
-        const std::span<Answer> answers = std::span(answers_).first(rays_.size());
         tracer_.use(ChosenVariants(variant));
-        if (!tracer_.submit(rays_) || !tracer_.collect(answers))
+        if (!tracer_.submit(rays_) || !tracer_.collect(answers_))
             return {};
-        if (expected_.empty())
-            expected_.assign(answers.begin(), answers.end());
-        const size_t different = count_contradictions(answers);
+        if (expected_.names.empty())
+            expected_ = answers_;
+        const size_t different = count_contradictions();
         if (different == 0)
             return tracer_.kernel_seconds();
         say(log_, LogLevel::Warning,
@@ -46,15 +42,15 @@ public:
 
 private:
     /// Counts the rays for which both kernels are certain, of different triangles.
-    size_t count_contradictions(std::span<const Answer> answers) const {
+    size_t count_contradictions() const {
         const bool any_hit = tracer_.ray_kind().any_hit;
         const auto is_certain = [](const Answer& a) {
             return a.prim != OVC_FLAGGED && a.prim != OVC_CAPPED &&
                    a.further()[0] == OVC_NO_TRIANGLE;
         };
         size_t count = 0;
-        for (size_t i = 0; i < answers.size(); ++i) {
-            const Answer &a = answers[i], &b = expected_[i];
+        for (size_t i = 0; i < rays_.size(); ++i) {
+            const Answer a = answers_[i], b = expected_[i];
             const bool alike =
                 any_hit ? (a.prim == OVC_MISS) == (b.prim == OVC_MISS) : a.prim == b.prim;
             count += !alike && is_certain(a) && is_certain(b);
@@ -65,8 +61,8 @@ private:
     Tracer& tracer_;
     SentRays rays_;
     const LogSink log_;
-    std::vector<Answer> answers_;
-    std::vector<Answer> expected_; // of the variant that was timed first
+    Answers answers_;
+    Answers expected_; // of the variant that was timed first
 };
 
 } // namespace ovc

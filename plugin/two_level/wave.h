@@ -18,6 +18,8 @@ namespace ovc {
 template <class Query>
 class Wave {
 public:
+    static constexpr bool kAnyHit = Query::kAnyHit;
+
     Wave(const Tracing& tracing, PassRunner& passes, const Query& query)
         : tracing_(tracing),
           passes_(passes),
@@ -101,13 +103,13 @@ public:
         return count;
     }
 
-    /// Resolves the answers, one per ray, for rays that were loaded, and sends the rays on. May run
-    /// beside a pass.
-    void resolve(std::span<const uint32_t> rays, std::span<const Answer> answers) {
-        assert(rays.size() == answers.size() && rays.size() <= loaded_);
+    /// Resolves the answers from the `first` on, one per ray, for rays that were loaded, and sends
+    /// the rays on. May run beside a pass.
+    void resolve(std::span<const uint32_t> rays, const Answers& answers, size_t first) {
+        assert(rays.size() <= loaded_);
         parallel_for(rays.size(), kRaysPerTask, [&](size_t from, size_t to) {
             resolver_.resolve(
-                rays.subspan(from, to - from), answers.subspan(from, to - from),
+                rays.subspan(from, to - from), answers, first + from,
                 [&](uint32_t i, const Answer& answer) { return takes(i, answer); },
                 [&](uint32_t i, uint32_t key, double end) {
                     states_[i] = {end, key, State::Waits};

@@ -40,6 +40,7 @@ public:
             return fine;
         if (ready() == 0)
             return passes_.lost(); // nothing could be moved in
+        const PassRunner::Scope scope(passes_);
         Batch* now = &passes_.batches()[0];
         Batch* other = &passes_.batches()[1];
         load(*other, 0);
@@ -52,15 +53,14 @@ public:
             std::vector<uint32_t> wanted_beside;
             if (passes_.moves_beside())
                 wanted_beside = wanted();
-            const Result<size_t> moved = passes_.pass(*now, wanted_beside, [&] {
-                resolve(*other);
-                if (tracing_.scene.store)
-                    passes_.read_ahead(worth_moving());
-                goes_on = meanwhile() && goes_on;
-                const bool enough = ready() >= passes_.few_rays();
-                load(*other,
-                     goes_on && enough ? std::min(passes_.part_rays(ready()), max_rays) : 0);
-            });
+            passes_.begin_pass(*now, wanted_beside);
+            resolve(*other);
+            if (tracing_.scene.store)
+                passes_.read_ahead(worth_moving());
+            goes_on = meanwhile() && goes_on;
+            const bool enough = ready() >= passes_.few_rays();
+            load(*other, goes_on && enough ? std::min(passes_.part_rays(ready()), max_rays) : 0);
+            const Result<size_t> moved = passes_.finish_pass(*now);
             if (!moved)
                 return moved.error();
             assert(*moved <= wanted_beside.size());
@@ -113,11 +113,14 @@ private:
         batch.rays.resize(std::min(ready(), max_rays));
         batch.make_room(passes_.form());
         size_t first = 0, k = 0;
+        bool all_any_hit = true;
         each([&](auto& wave) {
             const size_t count = wave.load(std::span(batch.rays).subspan(first), batch.sent, first);
             batch.of_waves[k++] = count;
             first += count;
+            all_any_hit = all_any_hit && (count == 0 || wave.kAnyHit);
         });
+        batch.sent.set_all_any_hit(all_any_hit);
         assert(first == batch.rays.size());
     }
 
@@ -125,8 +128,7 @@ private:
         size_t first = 0, k = 0;
         each([&](auto& wave) {
             const size_t count = batch.of_waves[k++];
-            wave.resolve(std::span(batch.rays).subspan(first, count),
-                         std::span(batch.answers).subspan(first, count));
+            wave.resolve(std::span(batch.rays).subspan(first, count), batch.answers, first);
             first += count;
         });
     }

@@ -118,7 +118,7 @@ Result<std::string> overlap(GlState& state, const DeviceInfo& device, double sec
         return tracer.error();
     const size_t count = std::min<size_t>(scene.rays.size(), plan.batch_rays);
     SentRays rays = send((*tracer)->form(), std::span(scene.rays).first(count));
-    std::vector<Answer> answers(count);
+    Answers answers;
     double pass = 1e9, move = 1e9, both = 1e9, first = 0;
     uint64_t moved = 0;
     const Stopwatch watch;

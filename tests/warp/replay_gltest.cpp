@@ -16,12 +16,12 @@ constexpr size_t kRays = 100000;
 class ReplayGl : public test::OnGl {
 protected:
     /// Returns what the kernel answers, with its counts.
-    std::vector<Answer> trace(const PooledScene& scene, const KernelVariant& variant,
-                              std::span<const Ray> rays, bool any_hit) {
+    Answers trace(const PooledScene& scene, const KernelVariant& variant, std::span<const Ray> rays,
+                  bool any_hit) {
         std::vector<RayState> states(rays.size());
         for (size_t i = 0; i < rays.size(); ++i)
             states[i] = {.ray = rays[i], .asks = any_hit ? OVC_RAY_ANY_HIT : 0};
-        std::vector<Answer> answers(rays.size());
+        Answers answers;
         gl->run([&](GlState& state) {
             plan = *plan_memory(256u << 20, gl->info());
             const PassOptions options{.variants = ChosenVariants(variant), .counts = true};
@@ -42,7 +42,7 @@ protected:
                             std::span<const Ray> rays) {
         const KernelVariant variant{
             .packets = how.packets, .branches = how.branches, .register_words = 32};
-        const std::vector<Answer> answers = trace(scene, variant, rays, how.any_hit);
+        const Answers answers = trace(scene, variant, rays, how.any_hit);
         std::vector<LocalRay> slots = scene.local_rays(rays, how.any_hit);
         LocalRay none{};
         none.t_end = OVC_NO_RAY;
@@ -65,10 +65,11 @@ protected:
             const Steps& expected = steps[slot_of[i] / packet];
             const bool second = slot_of[i] % packet == 1;
             rounds += expected.rounds;
-            different += answers[i].further()[0] != expected.rounds ||
-                         answers[i].further()[1] != expected.units.size() ||
-                         answers[i].prim !=
-                             ((second ? expected.second_prim : expected.prim) & ~OVC_SAYS_MORE);
+            const Answer answer = answers[i];
+            different +=
+                answer.further()[0] != expected.rounds ||
+                answer.further()[1] != expected.units.size() ||
+                answer.prim != ((second ? expected.second_prim : expected.prim) & ~OVC_SAYS_MORE);
         }
         EXPECT_EQ(different, 0u);
         EXPECT_GT(rounds, 2 * rays.size());
