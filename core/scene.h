@@ -162,6 +162,19 @@ enum SeenBy : uint32_t {
     kSeenByAll = 15
 };
 
+/// Which lights shine on a mesh, as POV-Ray's light_group has it: those of its group, and those of
+/// no group unless it keeps to its own.
+struct LitBy {
+    uint32_t group = kNone; // Light::group
+    bool group_alone = false;
+
+    bool includes(uint32_t light_group) const {
+        return light_group == kNone ? !group_alone : light_group == group;
+    }
+
+    auto operator<=>(const LitBy&) const = default;
+};
+
 /// The host's knowledge of a mesh besides its triangles. Scene::meshes[m] belongs to
 /// Scene::soup.chunks[m].
 struct MeshInfo {
@@ -172,6 +185,7 @@ struct MeshInfo {
     /// The mesh whose normals this one shares, turned by `turn`; kNone: its own. Instances use it.
     uint32_t normals_from = kNone;
     dmat3 turn{1}; // multiplies those normals, whose length then does not matter
+    LitBy lit_by;
     /// Indices into Scene::cutouts of what all rays see of the mesh, and shadow rays besides;
     /// kNone: it has no holes.
     uint32_t cutout = kNone;
@@ -236,6 +250,7 @@ struct Light {
     dvec3 shadow_offset{0};
     /// What is nearer to the light than this throws no shadow, such as what it lies on.
     double clearance = 0;
+    uint32_t group = kNone; // of lights and meshes; kNone: shines on all that LitBy lets it
 };
 
 /// The image is a window at the end of `direction` from the eye, `right` wide and `up` high

@@ -134,9 +134,9 @@ void each_field(auto& io, Some<LightBeam> auto& b) {
 }
 
 void each_field(auto& io, Some<Light> auto& l) {
-    io(l.position, l.color, l.shadow_offset, l.clearance, l.on_camera, l.direction, l.cone, l.beam,
-       l.parallel, l.shadowless, l.lights_media, l.fades_in_air, l.fade_distance, l.fade_power,
-       l.stand_in);
+    io(l.position, l.color, l.shadow_offset, l.clearance, l.group, l.on_camera, l.direction, l.cone,
+       l.beam, l.parallel, l.shadowless, l.lights_media, l.fades_in_air, l.fade_distance,
+       l.fade_power, l.stand_in);
 }
 
 void each_field(auto& io, Some<ImageWindow> auto& w) {
@@ -182,8 +182,8 @@ void each_field(auto& io, Some<Instancing> auto& i) {
 /// Passes all fields except the normals and texture coordinates, which are parts of their own in
 /// the file.
 void each_field(auto& io, Some<MeshInfo> auto& m) {
-    io(m.name, m.material, m.curved, m.normals_from, m.turn, m.cutout, m.shadow_cutout, m.uv_from,
-       m.normals_left_out, m.texture_coordinates_left_out);
+    io(m.name, m.material, m.lit_by.group, m.lit_by.group_alone, m.curved, m.normals_from, m.turn,
+       m.cutout, m.shadow_cutout, m.uv_from, m.normals_left_out, m.texture_coordinates_left_out);
 }
 
 /// Passes all fields except meshes, soup, and what the file's other parts hold.

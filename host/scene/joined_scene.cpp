@@ -50,6 +50,7 @@ public:
             move(mesh.cutout, cutouts);
             move(mesh.shadow_cutout, cutouts);
         }
+        move_light_groups(scene);
         for (Cutout& cutout : scene.cutouts)
             move(cutout.texture, textures);
         for (Texture& texture : scene.textures)
@@ -76,6 +77,22 @@ private:
     void warn(const std::string& name, std::string_view what) const {
         say(log_, LogLevel::Warning,
             fmt::format("{}: its {} left out: a scene of several files has one", name, what));
+    }
+
+    /// Gives the scene's groups of lights other numbers than those of the scenes before have.
+    void move_light_groups(Scene& scene) {
+        uint32_t next = light_groups_;
+        const auto move = [&](uint32_t& group) {
+            if (group == kNone)
+                return;
+            group += light_groups_;
+            next = std::max(next, group + 1);
+        };
+        for (Light& light : scene.lights)
+            move(light.group);
+        for (MeshInfo& mesh : scene.meshes)
+            move(mesh.lit_by.group);
+        light_groups_ = next;
     }
 
     /// Moves the indices of the scene's textures and materials, in it and of them.
@@ -172,6 +189,7 @@ private:
 
     const LogSink& log_;
     Scene all_;
+    uint32_t light_groups_ = 0; // in all_
     uint64_t triangles_;
 };
 

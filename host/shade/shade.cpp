@@ -125,6 +125,7 @@ SurfacePoint surface_point(const Scene& scene, const Ray& ray, const Hit& hit, c
     const double doubled_area = glm::length(outwards); // a hit triangle has an area
 
     SurfacePoint s;
+    s.lit_by = mesh.lit_by;
     s.entering = glm::dot(outwards, ray.dir) <= 0;
     s.view = glm::normalize(ray.dir);
     s.geometric_normal = (s.entering ? 1.0 : -1.0) * (outwards / doubled_area);
@@ -240,6 +241,8 @@ FromLight light_at(const Light& light, const dvec3& position) {
 }
 
 vec3 direct_light(const Light& light, const SurfacePoint& surface) {
+    if (!surface.lit_by.includes(light.group))
+        return vec3(0);
     if (!surface.coats.empty())
         return sum_of_coats(surface,
                             [&](const SurfacePoint& coat) { return direct_light(light, coat); });

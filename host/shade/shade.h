@@ -39,6 +39,7 @@ struct SurfacePoint {
     vec3 through{0};   // with a finish: the share of light that goes through here, for each color
     MapValues maps;
     bool entering; // the ray came from outside, from where the corners run counterclockwise
+    LitBy lit_by;
     /// The parts of a material that is layered or mixed; else empty. `color` is then their mean.
     std::vector<Coat> coats;
 };

@@ -162,6 +162,16 @@ TEST(DirectLight, BeamsAreFullNearTheirAxis) {
         EXPECT_NEAR(off_axis(x), share, 1e-4) << x;
 }
 
+TEST(DirectLight, KeepsToItsGroup) {
+    Scene scene = floor_scene();
+    scene.meshes[0].lit_by = {.group = 1, .group_alone = true};
+    const SurfacePoint s = surface_point(scene, kFromAbove, kShadedHit);
+    Light light{{3, 4, 5}, vec3(1)};
+    EXPECT_EQ(direct_light(light, s), vec3(0));
+    light.group = 1;
+    EXPECT_GT(direct_light(light, s).x, 0);
+}
+
 TEST(ShadowRay, EndsBeforeWhatTheLightLiesOn) {
     Light light{{0, 10, 0}, vec3(1)};
     light.clearance = 1e-3;

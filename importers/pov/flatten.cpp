@@ -34,6 +34,7 @@ struct Placed {
     bool inverse;
     Cover cover;
     uint32_t seen_by;
+    LitBy lit_by;
 };
 
 /// The state that an object inherits from its parents.
@@ -45,6 +46,7 @@ struct Inherited {
     PlacedInterior interior;
     const Texture* inside = nullptr; // of the inner sides, with the placing of `texture`
     uint32_t seen_by = kSeenByAll;
+    LitBy lit_by;
     bool uv_mapping = false;
     bool inverse = false;
     bool hollow = false;
@@ -88,8 +90,9 @@ std::vector<TextureStep> to_uv_of(const Object& object, const dmat4& placed) {
     return steps;
 }
 
-void add_light(const LightSource& source, const dmat4& placed, Scene& scene) {
+void add_light(const LightSource& source, const dmat4& placed, uint32_t group, Scene& scene) {
     Light light = source.light;
+    light.group = group;
     light.position = dvec3(placed * dvec4(source.light.position, 1));
     const auto aim_from = [&](const dvec3& place) {
         const dvec3 aim = dvec3(placed * dvec4(source.point_at, 1)) - place;
@@ -130,10 +133,10 @@ public:
         }
         inherit(object, from);
         if (const auto* light = std::get_if<LightSource>(&object.shape))
-            add_light(*light, from.placed, scene_);
+            add_light(*light, from.placed, from.lit_by.group, scene_);
         else if (!std::holds_alternative<std::monostate>(object.shape) && is_wanted(from.seen_by))
-            placed.push_back(
-                {&object, from.placed, from.inverse, cover_of(object, from), from.seen_by});
+            placed.push_back({&object, from.placed, from.inverse, cover_of(object, from),
+                              from.seen_by, from.lit_by});
         for (const ObjectPtr& child : object.children)
             gather(*child, from);
     }
@@ -160,6 +163,8 @@ private:
         from.placed = from.placed * object.placed;
         from.in_solid = from.in_solid * object.placed;
         from.seen_by &= object.seen_by;
+        if (object.kind == "light_group")
+            from.lit_by = {light_groups_++, !object.global_lights};
         from.uv_mapping = from.uv_mapping || object.uv_mapping;
         from.inverse = from.inverse != object.inverse;
         // A short scene with groups of groups can place more objects than memory holds.
@@ -221,6 +226,7 @@ private:
         solid.object = &object;
         solid.placed = from.placed * object.placed;
         solid.seen_by = from.seen_by & object.seen_by;
+        solid.lit_by = from.lit_by;
         from.in_solid = glm::inverse(object.placed);
         from.inverse = false; // the inverse of a whole solid has the same surface
         if (gather_node(object, from, solid) && is_wanted(solid.seen_by))
@@ -235,7 +241,7 @@ private:
         if (solid.nodes.empty() && &object == solid.object)
             from.in_solid = dmat4(1);
         if (const auto* light = std::get_if<LightSource>(&object.shape)) {
-            add_light(*light, from.placed, scene_);
+            add_light(*light, from.placed, from.lit_by.group, scene_);
             return false;
         }
         csg::Node node;
@@ -294,6 +300,7 @@ private:
     Scene& scene_;
     MaterialTable materials_;
     uint64_t visited_ = 0;
+    uint32_t light_groups_ = 0; // so far
 };
 
 double triangles_at(const Gatherer& gatherer, int segments) {
@@ -456,6 +463,7 @@ void add_plane(const Placed& p, const HoleTable& holes, const dvec3& center, dou
         scene.add_mesh("plane", p.cover.material, Chunk::owning(origin, std::move(corners)));
     scene.meshes[mesh].cutout = holes.cutout(p.cover.holes);
     scene.meshes[mesh].uv = std::move(uv);
+    scene.meshes[mesh].lit_by = p.lit_by;
     scene.show(mesh, p.seen_by);
 }
 
@@ -483,6 +491,7 @@ Box reach_of_solids(const Box& world) {
 /// What the triangles of a mesh have in common.
 struct MeshKey {
     uint32_t material, cutout, seen_by;
+    LitBy lit_by;
     bool curved;
 
     auto operator<=>(const MeshKey&) const = default;
@@ -494,7 +503,7 @@ public:
     Batches(const HoleTable& holes, const dvec3& origin) : holes_(holes), origin_(origin) {}
 
     void add(const Facets& facets, const Placed& p) {
-        const MeshKey key{p.cover.material, holes_.cutout(p.cover.holes), p.seen_by,
+        const MeshKey key{p.cover.material, holes_.cutout(p.cover.holes), p.seen_by, p.lit_by,
                           p.cover.curved};
         add_corners(facets, p, holes_, origin_, all_[key]);
     }
@@ -521,6 +530,7 @@ private:
         scene.meshes[mesh].curved = key.curved && batch.smooth;
         scene.meshes[mesh].cutout = key.cutout;
         scene.meshes[mesh].uv = std::move(batch.uv);
+        scene.meshes[mesh].lit_by = key.lit_by;
         scene.show(mesh, key.seen_by);
     }
 
@@ -546,8 +556,9 @@ void add_solids(const std::vector<Solid>& solids, int segments, const Box& world
             for (const uint32_t number : groups[start + i])
                 for (const SolidPart& part : parts[i]) {
                     const Solid& solid = solids[number];
-                    batches.add(part.facets, {solid.object, solid.placed, false,
-                                              cover_of(solid, part.skin), solid.seen_by});
+                    batches.add(part.facets,
+                                {solid.object, solid.placed, false, cover_of(solid, part.skin),
+                                 solid.seen_by, solid.lit_by});
                 }
     }
 }

@@ -29,6 +29,7 @@ struct Solid {
     const Object* object;
     dmat4 placed{1}; // from the solid's space to the world
     uint32_t seen_by = kSeenByAll;
+    LitBy lit_by;
     std::vector<csg::Node> nodes; // children before parents; the last is the root
     std::vector<SolidLeaf> leaves;
 };

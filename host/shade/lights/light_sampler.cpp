@@ -140,6 +140,8 @@ std::optional<Arriving> LightSampler::sample(const SurfacePoint& surface, double
 
 std::optional<Arriving> LightSampler::from_light(uint32_t number,
                                                  const SurfacePoint& surface) const {
+    if (!surface.lit_by.includes(scene_.lights[number].group))
+        return std::nullopt;
     const FromLight from = light_at(scene_.lights[number], surface.position);
     if (from.towards == dvec3(0) || from.color == vec3(0))
         return std::nullopt;

@@ -99,9 +99,6 @@ void parse_children(Reader& reader, Object& object) {
 
 void parse_group(Reader& reader, Object& object) {
     parse_children(reader, object);
-    if (object.kind == "light_group")
-        object.notes.push_back(reader.note("light_group", object.place,
-                                           "the lights of a light_group shine on everything"));
     parse_modifiers(reader, object);
 }
 
@@ -184,7 +181,9 @@ void parse_hiding(Reader& reader, Object& object, uint32_t kinds) {
 
 bool parse_switch(Reader& reader, Object& object) {
     const Token token = reader.peek();
-    if (reader.take("no_shadow"))
+    if (reader.take("global_lights"))
+        object.global_lights = parse_flag(reader);
+    else if (reader.take("no_shadow"))
         parse_hiding(reader, object, kShadowsLights | kShadowsEmitters);
     else if (reader.take("no_image"))
         parse_hiding(reader, object, kSeenByCamera);
