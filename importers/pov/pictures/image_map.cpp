@@ -276,10 +276,10 @@ void parse_image_map(Reader& reader, const Token& word, Pigment& pigment) {
     pigment.notes.clear();
     if (words.type == 0)
         pigment.holes = holes;
-    // A color of the picture's table that lets light through has no place in a texture.
-    // Holes on texture coordinates are cut, and then the rest has one color.
-    const bool is_shown =
-        words.projection() && words.transparency.of_index.empty() && !(pigment.uv_mapping && holes);
+    // A color of the picture's table that lets light through has no place in a texture, except as
+    // holes. Holes on texture coordinates are cut, and then the rest has one color.
+    const bool has_table = !words.transparency.of_index.empty() && !pigment.holes;
+    const bool is_shown = words.projection() && !has_table && !(pigment.uv_mapping && holes);
     const bool is_one_color = holes && holes->one_color && words.type == 0;
     if (is_shown && !is_one_color)
         pigment.pattern = shown_by_textures(reader, start, named.path.string(), words, pigment);
