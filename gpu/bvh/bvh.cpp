@@ -137,7 +137,8 @@ private:
     /// Fills the node in. Returns true if its items are divided in two.
     bool open(uint32_t node, const Range& range, int depth, Range& left, Range& right) {
         assert(range.count() > 0 && range.last <= range.end && depth <= kMaxBvhDepth);
-        const Extent extent = gathered<Extent>(range.first, range.last);
+        Extent extent;
+        gather(range.first, range.last, extent);
         nodes_[node].box = extent.bounds.box();
         if (range.count() == 1) {
             nodes_[node].item = items_[range.first].index();
@@ -150,23 +151,20 @@ private:
         return true;
     }
 
-    /// Returns the sum of items [first, last): Sum(args...) with all of them added.
-    template <class Sum, class... Args>
-    Sum gathered(size_t first, size_t last, const Args&... args) const {
-        const auto add_some = [&](size_t from, size_t to, Sum& sum) {
+    /// Adds items [first, last) to the sum, which holds none yet.
+    template <class Sum>
+    void gather(size_t first, size_t last, Sum& sum) const {
+        const auto add_some = [&](size_t from, size_t to, Sum& some) {
             for (size_t i = from; i < to; ++i)
-                sum.add(items_[i]);
+                some.add(items_[i]);
         };
-        Sum all(args...);
-        if (last - first < kParallelSum) {
-            add_some(first, last, all);
-            return all;
-        }
-        return parallel_reduce(
-            last - first, std::move(all),
-            [&](size_t from, size_t to, Sum sum) {
-                add_some(first + from, first + to, sum);
-                return sum;
+        if (last - first < kParallelSum)
+            return add_some(first, last, sum);
+        sum = parallel_reduce(
+            last - first, sum,
+            [&](size_t from, size_t to, Sum some) {
+                add_some(first + from, first + to, some);
+                return some;
             },
             [](Sum a, const Sum& b) {
                 a.add(b);
@@ -249,7 +247,8 @@ private:
     }
 
     Split best_split(size_t first, size_t last, const Binning& binning) const {
-        const Bins sums = gathered<Bins>(first, last, binning);
+        Bins sums(binning);
+        gather(first, last, sums);
         const auto& bins = sums.bins;
         Split best;
         for (int axis = 0; axis < 3; ++axis) {
@@ -273,7 +272,7 @@ private:
                     best = {cost, axis, i, 0};
             }
         }
-        if (best.axis >= 0) {
+        if (best.axis >= 0 && last - first >= kMinToCut) { // else nobody asks for the overlap
             std::array<Bounds, 2> sides{Bounds::empty(), Bounds::empty()};
             for (int i = 0; i < binning.bins; ++i)
                 sides[i >= best.bin].add(bins[best.axis][i].bounds);

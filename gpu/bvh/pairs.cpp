@@ -51,6 +51,11 @@ class OpenSides {
 public:
     explicit OpenSides(size_t triangles) : slots_(std::bit_ceil(triangles * 6 + 1), kEmpty) {}
 
+    /// Fetches the slot where looking for this key begins.
+    void fetch(uint64_t key) const {
+        __builtin_prefetch(&slots_[size_t(key) & (slots_.size() - 1)], 1);
+    }
+
     /// Takes out and returns the side that `fits` among those of this key; if there is none, puts
     /// `side` in and returns kNone.
     /// Looks at a few only: where thousands of triangles lie on one edge, some stay alone.
@@ -79,6 +84,12 @@ private:
 
     std::vector<uint64_t> slots_; // upper half of the key, side below
 };
+
+/// Returns the keys of the three sides.
+std::array<uint64_t, 3> side_keys(const LocalTriangle& t) {
+    const std::array<uint64_t, 3> h{hash(t[0]), hash(t[1]), hash(t[2])};
+    return {mix(h[0] + h[1]), mix(h[1] + h[2]), mix(h[2] + h[0])};
+}
 
 /// Which own corners the pair's corners 0 and 2 are.
 uint32_t order(uint32_t first, uint32_t last) {
@@ -147,17 +158,30 @@ private:
     /// triangles; further ones at it pair up among themselves.
     void find_neighbours() {
         OpenSides open(ids_.size());
-        for (uint32_t i = 0; i < ids_.size(); ++i) {
-            const LocalTriangle& t = triangle(i);
-            const std::array<uint64_t, 3> h{hash(t[0]), hash(t[1]), hash(t[2])};
-            for (uint32_t k = 0; k < 3; ++k) {
-                const uint32_t other =
-                    open.match_or_add(mix(h[k] + h[(k + 1) % 3]), 3 * i + k, [&](uint32_t side) {
-                        return side / 3 != i && same_side(t, k, triangle(side / 3), side % 3);
-                    });
-                if (other != kNone)
-                    meet(i, k, other / 3, other % 3);
+        constexpr uint32_t kAhead = 4; // triangles between fetching their slots and reading them
+        std::array<std::array<uint64_t, 3>, kAhead> keys;
+        const uint32_t count = uint32_t(ids_.size());
+        for (uint32_t next = 0; next < count + kAhead; ++next) {
+            std::array<uint64_t, 3>& at = keys[next % kAhead];
+            if (next >= kAhead)
+                match_sides(next - kAhead, at, open);
+            if (next < count) {
+                at = side_keys(triangle(next));
+                for (const uint64_t key : at)
+                    open.fetch(key);
             }
+        }
+    }
+
+    /// Finds the neighbours of triangle i among those before it.
+    void match_sides(uint32_t i, const std::array<uint64_t, 3>& keys, OpenSides& open) {
+        const LocalTriangle& t = triangle(i);
+        for (uint32_t k = 0; k < 3; ++k) {
+            const uint32_t other = open.match_or_add(keys[k], 3 * i + k, [&](uint32_t side) {
+                return side / 3 != i && same_side(t, k, triangle(side / 3), side % 3);
+            });
+            if (other != kNone)
+                meet(i, k, other / 3, other % 3);
         }
     }
 
