@@ -115,7 +115,7 @@ public:
     /// The kind of the rays that were submitted last.
     RayKind ray_kind() const { return kind_; }
 
-    /// Whether the pool's buffers suit the variant.
+    /// Whether the device and the scene suit the variant.
     bool can_run(const KernelVariant& variant) const;
     /// Begins to compile the kernel of the last pass as another variant; is_ready() tells whether
     /// that is over.
@@ -146,6 +146,7 @@ private:
     bool has_portals() const { return !top_.portals.empty(); }
     /// Whether rays of the pass may have to wait for a page.
     bool may_wait() const { return !all_fit_; }
+    bool takes_float_pairs() const;
     ShaderConfig shader_config(const KernelVariant& variant) const;
     Result<Done> make_answers();
     bool packs(const KernelVariant& variant) const {
@@ -169,6 +170,7 @@ private:
     KernelVariant variant_;      // of the pass
     bool long_stacks_ = false;   // eight words were too few
     bool never_refills_ = false; // rays need all rounds that there are
+    mutable std::optional<bool> keeps_float_pairs_; // the driver; asked when somebody wants to know
     const bool counts_rounds_ = needs(Workaround::CountedRounds);
     const bool registers_lose_words_ = needs(Workaround::ShortRegisterStack);
     const bool finishes_passes_ = needs(Workaround::FinishedPass);
