@@ -31,6 +31,8 @@ public:
         if (expected_.names.empty())
             expected_ = answers_;
         const size_t different = count_contradictions();
+        if (different == 0 && count_in_doubt(answers_) > count_in_doubt(expected_) + few())
+            return {}; // the host would have to decide too many of its rays
         if (different == 0)
             return tracer_.kernel_seconds();
         say(log_, LogLevel::Warning,
@@ -57,6 +59,15 @@ private:
         }
         return count;
     }
+
+    size_t count_in_doubt(const Answers& answers) const {
+        size_t count = 0;
+        for (size_t i = 0; i < rays_.size(); ++i)
+            count += answers[i].prim == OVC_FLAGGED || answers[i].prim == OVC_CAPPED;
+        return count;
+    }
+    /// So many more rays in doubt make no difference.
+    size_t few() const { return rays_.size() / 1024; }
 
     Tracer& tracer_;
     SentRays rays_;
