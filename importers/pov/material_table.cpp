@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <functional>
 
 namespace ovc::pov {
@@ -145,6 +146,22 @@ void MaterialTable::fill(const PlacedInterior& interior, ovc::Material& material
             material.media.push_back(medium(media, interior.placed));
 }
 
+/// Returns the finish with the amounts that the brightest direction has. Those of a lobe that goes
+/// with the cosine to the n-th are (n + 1) / 2 of its albedo, and of one whose half way goes so, (n
+/// + 2) / (4 (2 - 2^(-n/2))). Based on: Giesen, "Phong and Blinn-Phong normalization factors".
+static Finish with_peaks(const Surface& surface) {
+    Finish finish = surface.finish;
+    if (surface.diffuse_is_albedo)
+        finish.diffuse *= (finish.brilliance + 1) / 2;
+    if (surface.phong_is_albedo)
+        finish.phong *= (finish.phong_size + 1) / 2;
+    if (surface.specular_is_albedo) {
+        const float n = 1 / finish.roughness;
+        finish.specular *= (n + 2) / (4 * (2 - std::exp2(-n / 2)));
+    }
+    return finish;
+}
+
 /// The largest share of light that a surface adds or lets through.
 static constexpr float kMaxShare = 1000;
 
@@ -153,7 +170,7 @@ ovc::Material MaterialTable::made(const Texture& texture, const Color& color, co
     ovc::Material material;
     const Pigment& pigment = texture.pigment;
     const bool varies = pigment.pattern && !texture.mix.pattern;
-    Finish finish = texture.surface.finish;
+    Finish finish = with_peaks(texture.surface);
     finish.ambient = texture.surface.ambient * look_.ambient_light + texture.surface.emission;
     finish.irid_wavelengths = look_.irid_wavelengths;
     finish.filter_by_brightest = look_.before_3_7;

@@ -213,6 +213,17 @@ TEST(PovTexture, MixesTextures) {
     EXPECT_EQ(checkered.texture->at({6, 12, -6}), dvec3(1, 2, -1)) << "both scales";
 }
 
+/// As a plane is bright that povray 3.7.0.10 draws, lit and seen head on.
+TEST(PovFinish, AlbedosAreOfAllDirectionsTogether) {
+    const Scene scene =
+        textured_box("pigment { rgb 1 } finish { diffuse albedo 0.4 brilliance 4 "
+                     "phong albedo 0.3 phong_size 30 specular albedo 0.3 roughness 0.1 }");
+    const Finish& finish = *box_material(scene).finish;
+    EXPECT_NEAR(finish.diffuse, 0.4 * 2.50, 1e-3);
+    EXPECT_NEAR(finish.phong, 0.3 * 15.498, 1e-3);
+    EXPECT_NEAR(finish.specular, 0.3 * 1.5259, 1e-3);
+}
+
 TEST(PovTexture, TilesBeginWithTheSecond) {
     const Scene scene = textured_box("texture { tiles { texture { pigment { rgb x } } "
                                      "tile2 texture { pigment { rgb y } } } }");

@@ -23,9 +23,9 @@ bool is_word(const Token& token) {
     return token.kind == TokenKind::Name && token.name->is_keyword;
 }
 
-/// Reads the amount of diffuse, phong or specular, which may be given as an albedo.
-float parse_share(Reader& reader) {
-    reader.take("albedo");
+/// Reads the amount of diffuse, phong or specular, and whether it is given as an albedo.
+float parse_share(Reader& reader, bool& is_albedo) {
+    is_albedo = reader.take("albedo");
     return float(parse_float(reader));
 }
 
@@ -50,9 +50,10 @@ void parse_reflection(Reader& reader, Surface& surface) {
         else if (reader.take("metallic"))
             finish.metallic_reflection =
                 starts_number(reader, reader.peek()) ? float(parse_float(reader)) : 1;
-        else if (reader.take("exponent"))
-            parse_float(reader);
-        else
+        else if (const Token word = reader.peek(); reader.take("exponent")) {
+            if (parse_float(reader) != 1)
+                surface.notes.push_back(left_out(reader, "a reflection", word));
+        } else
             reader.fail_here("a part of reflection { }");
     }
 }
@@ -77,7 +78,7 @@ bool parse_finish_part(Reader& reader, Surface& surface) {
     else if (reader.take("emission"))
         surface.emission = parse_color(reader).rgb;
     else if (reader.take("diffuse")) {
-        finish.diffuse = parse_share(reader);
+        finish.diffuse = parse_share(reader, surface.diffuse_is_albedo);
         if (reader.take(','))
             parse_float(reader);
     } else if (reader.take("crand"))
@@ -85,11 +86,11 @@ bool parse_finish_part(Reader& reader, Surface& surface) {
     else if (reader.take("brilliance"))
         finish.brilliance = float(parse_float(reader));
     else if (reader.take("phong"))
-        finish.phong = parse_share(reader);
+        finish.phong = parse_share(reader, surface.phong_is_albedo);
     else if (reader.take("phong_size"))
         finish.phong_size = float(parse_float(reader));
     else if (reader.take("specular"))
-        finish.specular = parse_share(reader);
+        finish.specular = parse_share(reader, surface.specular_is_albedo);
     else if (reader.take("roughness"))
         finish.roughness = std::max(1e-6f, float(parse_float(reader)));
     else if (reader.take("metallic"))

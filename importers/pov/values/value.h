@@ -80,6 +80,9 @@ struct Pigment {
 /// the scene's ambient_light.
 struct Surface {
     Finish finish;
+    /// Whether these are albedos, the light that goes in all directions together, and not what the
+    /// brightest one has.
+    bool diffuse_is_albedo = false, phong_is_albedo = false, specular_is_albedo = false;
     vec3 ambient{0.1f};
     vec3 emission{0};
     /// Old scenes give these in a finish. This ior takes precedence over an interior's, and
