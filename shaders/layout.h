@@ -34,7 +34,7 @@
 #define OVC_PAIR 0x80000000u
 #define OVC_LOOSE_PAIR 0x40000000u
 #define OVC_LOOSE_STEP 1.1920928955078125e-7 // 2^-23
-#define OVC_LOOSE_TEXEL 3 // of the header
+#define OVC_LOOSE_TEXEL 3                    // of the header
 #define OVC_HAS_LOOSE_PAIRS 1u
 #define OVC_OWN_ORDER 0x88u // v0 and v2 of both triangles are their own corners 0 and 2
 #define OVC_NO_TRIANGLE 0xffffffffu

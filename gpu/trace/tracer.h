@@ -166,10 +166,10 @@ private:
     PassOptions options_;
     std::span<const Page> page_data_;
     const DeviceInfo device_;
-    RayKind kind_;               // of the rays of the pass
-    KernelVariant variant_;      // of the pass
-    bool long_stacks_ = false;   // eight words were too few
-    bool never_refills_ = false; // rays need all rounds that there are
+    RayKind kind_;                                  // of the rays of the pass
+    KernelVariant variant_;                         // of the pass
+    bool long_stacks_ = false;                      // eight words were too few
+    bool never_refills_ = false;                    // rays need all rounds that there are
     mutable std::optional<bool> keeps_float_pairs_; // the driver; asked when somebody wants to know
     const bool counts_rounds_ = needs(Workaround::CountedRounds);
     const bool registers_lose_words_ = needs(Workaround::ShortRegisterStack);

@@ -80,7 +80,7 @@ struct Object {
     uint32_t depth = 1;            // levels of objects within objects, as parts, clips or bounds
     uint32_t seen_by = kSeenByAll; // as no_shadow, no_image and no_reflection leave it
     bool uv_mapping = false;       // of its own texture and those of its parts
-    bool global_lights = false; // of a light_group: lights of no group shine on it too
+    bool global_lights = false;    // of a light_group: lights of no group shine on it too
     bool inverse = false;
     bool hollow = false; // media may fill it
     bool open = false;
