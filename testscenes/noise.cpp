@@ -43,11 +43,6 @@ dvec2 circle(double turns) {
     return {quarter_on * sine_of_turns(0.25 - std::abs(folded)), sine};
 }
 
-double smooth_step(double from, double to, double x) {
-    const double s = std::clamp((x - from) / (to - from), 0.0, 1.0);
-    return s * s * (3 - 2 * s);
-}
-
 double noise(dvec2 p, uint64_t seed) {
     return noise(dvec3(p.x, p.y, 0), seed);
 }

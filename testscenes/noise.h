@@ -2,6 +2,7 @@
 // Smooth functions that are the same on every machine: sine and noise from + - * / and floor alone.
 #pragma once
 
+#include "core/smooth_step.h"
 #include "core/vec.h"
 
 #include <cstdint>
@@ -10,10 +11,6 @@ namespace ovc {
 
 /// Returns the point of the unit circle after `turns` turns, (cosine, sine), to about 1e-9.
 dvec2 circle(double turns);
-
-/// Returns 0 up to `from`, 1 from `to` on, and a smooth transition between. If from > to, it is the
-/// other way round.
-double smooth_step(double from, double to, double x);
 
 /// Returns value noise in [-1, 1], which is twice differentiable and has a value at each corner of
 /// the unit cells.

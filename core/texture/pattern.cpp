@@ -2,6 +2,7 @@
 // Evaluates patterns with their warps, turbulence and waves, and mixes the colors of their stops.
 #include "core/texture/pattern.h"
 
+#include "core/smooth_step.h"
 #include "core/texture/pattern_value.h"
 #include "core/texture/warp.h"
 
@@ -37,7 +38,7 @@ double wave_of(const Pattern& pattern, double value) {
     case Pattern::Wave::Scallop:
         return std::abs(std::sin(std::numbers::pi * x));
     case Pattern::Wave::Cubic:
-        return x * x * (3 - 2 * x);
+        return smooth_step(x);
     case Pattern::Wave::Power:
         return std::pow(x, pattern.exponent);
     }
@@ -106,12 +107,9 @@ TransparentColor color_of_pattern(std::span<const Texture> textures, const Textu
     const TexturePoint& point = place.at;
     TransparentColor sum;
     if (texture.pattern.kind == Kind::Average) {
-        double weights = 0;
-        for (const TextureStop& stop : texture.stops)
-            weights += stop.at;
-        for (const TextureStop& stop : texture.stops)
-            add(sum, color_of_stop(textures, stop, point),
-                float(weights > 0 ? stop.at / weights : 1.0 / double(texture.stops.size())));
+        for_each_averaged(texture.stops, [&](const TextureStop& stop, double share) {
+            add(sum, color_of_stop(textures, stop, point), float(share));
+        });
         return sum;
     }
     const Between where = between(

@@ -38,6 +38,17 @@ inline float gray(const vec3& rgb) {
     return 0.297f * rgb.x + 0.589f * rgb.y + 0.114f * rgb.z;
 }
 
+/// Calls use(stop, share) for each stop of an average. Shares go by `at`, and add up to 1; they are
+/// the same where all of these are 0.
+template <class Use>
+void for_each_averaged(std::span<const TextureStop> stops, const Use& use) {
+    double weights = 0;
+    for (const TextureStop& stop : stops)
+        weights += stop.at;
+    for (const TextureStop& stop : stops)
+        use(stop, weights > 0 ? stop.at / weights : 1.0 / double(stops.size()));
+}
+
 /// Two neighbouring stops, by their indices, and the share of the second.
 struct Between {
     size_t first, second;

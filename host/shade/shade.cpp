@@ -4,6 +4,7 @@
 // sky for ambient light.
 #include "host/shade/shade.h"
 
+#include "core/smooth_step.h"
 #include "core/texture/pattern.h"
 #include "host/shade/finish.h"
 #include "host/shade/refract.h"
@@ -194,19 +195,12 @@ static dvec3 towards_light(const Light& light, const dvec3& position) {
     return light.parallel ? std::abs(glm::dot(there, light.direction)) * -light.direction : there;
 }
 
-/// Returns 1 for 1 or more, 0 for 0 or less, and what is smooth in between.
-static double smooth_step(double x) {
-    const double t = std::clamp(x, 0.0, 1.0);
-    return t * t * (3 - 2 * t);
-}
-
 /// Returns the share of the light that is left so far off the beam's axis.
 static double share_of_beam(const LightBeam& beam, double off_axis) {
     if (off_axis >= beam.falloff)
         return 0;
-    const double edge = off_axis <= beam.radius
-                            ? 1
-                            : smooth_step((beam.falloff - off_axis) / (beam.falloff - beam.radius));
+    const double edge =
+        off_axis <= beam.radius ? 1 : smooth_step(beam.falloff, beam.radius, off_axis);
     return std::pow(1 - off_axis / beam.falloff, beam.tightness) * edge;
 }
 
@@ -222,9 +216,9 @@ static double attenuation(const Light& light, const dvec3& there, const dvec3& t
         const double cosine = -glm::dot(towards, light.direction);
         if (!(cosine > 0))
             return 0;
-        const double x =
-            (cosine - cone.falloff_cosine) / (cone.radius_cosine - cone.falloff_cosine);
-        const double edge = cosine >= cone.radius_cosine ? 1 : smooth_step(x);
+        const double edge = cosine >= cone.radius_cosine
+                                ? 1
+                                : smooth_step(cone.falloff_cosine, cone.radius_cosine, cosine);
         share = std::pow(cosine, cone.tightness) * edge;
     }
     if (light.fade_distance > 0 && light.fade_power > 0)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/texture/noise/noise.h"
 
+#include "core/smooth_step.h"
 #include "core/texture/noise/noise_values.h"
 
 #include <algorithm>
@@ -37,11 +38,6 @@ uint32_t shuffled_number(uint32_t x, uint32_t y, uint32_t z) {
 
 uint32_t lattice_number(int64_t x, int64_t y, int64_t z) {
     return shuffled_number(uint32_t(x + kShift), uint32_t(y + kShift), uint32_t(z + kShift));
-}
-
-/// Returns 3 t^2 - 2 t^3.
-double smooth_step(double t) {
-    return t * t * (3 - 2 * t);
 }
 
 /// The corners of the lattice's cell around a point.

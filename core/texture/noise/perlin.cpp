@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/texture/noise/perlin.h"
 
+#include "core/smooth_step.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -56,11 +58,6 @@ double kept_octaves(const NoiseSum& sum) {
     const double square =
         std::max(glm::dot(sum.sides[0], sum.sides[0]), glm::dot(sum.sides[1], sum.sides[1]));
     return square > 0 ? std::clamp(-1 - 0.5 * std::log2(square), 0.0, octaves) : octaves;
-}
-
-double smooth_step(double low, double high, double x) {
-    const double t = std::clamp((x - low) / (high - low), 0.0, 1.0);
-    return t * t * (3 - 2 * t);
 }
 
 } // namespace

@@ -3,6 +3,7 @@
 // by asking povray for values, and so were rainbows (section 3.4.3.6).
 #include "host/shade/surface/fog.h"
 
+#include "core/smooth_step.h"
 #include "core/texture/pattern.h"
 #include "host/shade/finish.h"
 
@@ -40,8 +41,7 @@ static double share_of_arc(const Rainbow& bow, const dvec3& direction) {
     const double off = 2 * kDegrees * std::acos(std::clamp(cosine, -1.0, 1.0));
     if (!(off < bow.arc))
         return 0;
-    const double t = off <= bow.full_arc ? 1 : (bow.arc - off) / (bow.arc - bow.full_arc);
-    return t * t * (3 - 2 * t);
+    return off <= bow.full_arc ? 1 : smooth_step(bow.arc, bow.full_arc, off);
 }
 
 /// Returns the color at a share of the bow's width.

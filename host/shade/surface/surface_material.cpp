@@ -102,25 +102,21 @@ static vec3 add_mix(const Scene& scene, const PlacedTexture& placed, const Textu
                     const vec3& weight, const SurfacePoint& bare, std::vector<Coat>& coats) {
     const Texture& mix = scene.textures[placed.texture];
     vec3 through(0);
-    const auto add_stop = [&](size_t stop, double share) {
+    const auto add_stop = [&](const TextureStop& stop, double share) {
         if (share > 0)
-            through += float(share) * add_coats(scene, mix.stops[stop].texture, point,
-                                                float(share) * weight, bare, coats);
+            through += float(share) *
+                       add_coats(scene, stop.texture, point, float(share) * weight, bare, coats);
     };
     if (mix.pattern.kind == Pattern::Kind::Average) {
-        double weights = 0;
-        for (const TextureStop& stop : mix.stops)
-            weights += stop.at;
-        for (size_t i = 0; i < mix.stops.size(); ++i)
-            add_stop(i, weights > 0 ? mix.stops[i].at / weights : 1.0 / double(mix.stops.size()));
+        for_each_averaged(mix.stops, add_stop);
         return through;
     }
     const PatternPlace place = evaluate(scene.textures, mix.pattern, placed.at(point));
     const Between where = between(
         mix.stops.size(), [&](size_t i) { return mix.stops[i].at; }, place.value,
         is_discrete(mix.pattern.kind));
-    add_stop(where.first, 1 - where.share);
-    add_stop(where.second, where.share);
+    add_stop(mix.stops[where.first], 1 - where.share);
+    add_stop(mix.stops[where.second], where.share);
     return through;
 }
 

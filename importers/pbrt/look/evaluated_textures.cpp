@@ -158,6 +158,17 @@ std::optional<uint32_t> Textures::make_combined(const Definition& definition, Te
     return add_texture(scene_, std::move(texture));
 }
 
+/// Returns a texture whose pattern lies on a mapping of planes; nothing for another mapping.
+static std::optional<Texture> on_plane(const std::optional<Mapping>& mapping, Pattern::Kind kind) {
+    if (!mapping || mapping->projection != Projection::Planar)
+        return std::nullopt;
+    Texture texture;
+    texture.on_uv = mapping->on_uv;
+    texture.pattern.kind = kind;
+    texture.pattern.steps = mapping->steps;
+    return texture;
+}
+
 /// In two dimensions the board lies on a mapping, in three in the texture's space.
 std::optional<uint32_t> Textures::make_checkerboard(const Definition& definition) {
     const TextureRequest& request = definition.request;
@@ -165,13 +176,8 @@ std::optional<uint32_t> Textures::make_checkerboard(const Definition& definition
     solid.steps = {to_own_space(request.to_world)};
     const std::optional<Mapping> mapping =
         request.parameters.number("dimension", 2) == 3 ? solid : mapping_of(request);
-    if (!mapping || mapping->projection != Projection::Planar)
-        return std::nullopt;
-    Texture texture;
-    texture.on_uv = mapping->on_uv;
-    texture.pattern.kind = Pattern::Kind::Checker;
-    texture.pattern.steps = mapping->steps;
-    return make_choice(definition, std::move(texture), {"tex1", "tex2"});
+    std::optional<Texture> texture = on_plane(mapping, Pattern::Kind::Checker);
+    return texture ? make_choice(definition, std::move(*texture), {"tex1", "tex2"}) : std::nullopt;
 }
 
 std::optional<uint32_t> Textures::make_choice(const Definition& definition, Texture texture,
@@ -187,27 +193,20 @@ std::optional<uint32_t> Textures::make_choice(const Definition& definition, Text
 }
 
 std::optional<uint32_t> Textures::make_dots(const Definition& definition) {
-    const std::optional<Mapping> mapping = mapping_of(definition.request);
-    if (!mapping || mapping->projection != Projection::Planar)
-        return std::nullopt;
-    Texture texture;
-    texture.on_uv = mapping->on_uv;
-    texture.pattern.kind = Pattern::Kind::Dots;
-    texture.pattern.steps = mapping->steps;
-    return make_choice(definition, std::move(texture), {"outside", "inside"});
+    std::optional<Texture> texture = on_plane(mapping_of(definition.request), Pattern::Kind::Dots);
+    return texture ? make_choice(definition, std::move(*texture), {"outside", "inside"})
+                   : std::nullopt;
 }
 
 /// The colors of the corners are mixed along t, and the two that come of it along s.
 std::optional<uint32_t> Textures::make_bilerp(const Definition& definition) {
-    const std::optional<Mapping> mapping = mapping_of(definition.request);
-    if (!mapping || mapping->projection != Projection::Planar)
+    const std::optional<Texture> plane =
+        on_plane(mapping_of(definition.request), Pattern::Kind::Function);
+    if (!plane)
         return std::nullopt;
     const auto share_along = [&](uint32_t axis) {
-        Texture share;
-        share.on_uv = mapping->on_uv;
-        share.pattern.kind = Pattern::Kind::Function;
+        Texture share = *plane;
         share.pattern.wave = Pattern::Wave::None;
-        share.pattern.steps = mapping->steps;
         share.pattern.formula = {{{FormulaStep::Kind::Argument, axis}}, {1}};
         share.stops = {{0, {vec3(0)}}, {1, {vec3(1)}}};
         return TextureStop{0, {}, add_texture(scene_, std::move(share))};
