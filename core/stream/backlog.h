@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <utility>
 #include <vector>
 
 namespace ovc {
@@ -46,6 +47,16 @@ public:
                 last_of(after_, first),
                 last_of(masks_, first),
                 last_of(filters_, first)};
+    }
+    /// Moves the last `count` rays (at most size()) to another backlog, in place of its own.
+    void move_last(size_t count, Backlog& to) {
+        to.drop_last(to.size());
+        if (count == size()) {
+            std::swap(*this, to);
+            return;
+        }
+        to.push(last(count));
+        drop_last(count);
     }
     void drop_last(size_t count) {
         assert(count <= size());

@@ -143,20 +143,24 @@ Page build_page(const Soup& soup, const Leaf& leaf, BuildProgress* progress,
     return pack(PageItems(soup, leaf, progress, loose, name), leaf, progress);
 }
 
-Box box_of(const Page& page) {
-    const auto root = page.view().subspan(OVC_ROOT_UNIT * OVC_UNIT_TEXELS);
+Box child_box(const Page& page, uint32_t node, uint32_t child) {
+    const auto words = page.view().subspan(size_t(node) * OVC_UNIT_TEXELS);
     const GridHeader grid = header_of(page.view());
     Box box;
-    for (size_t child = 0; child < 4; ++child) {
-        Box one;
-        for (int axis = 0; axis < 3; ++axis) {
-            const GridRange range = range_of(root[size_t(axis)], child);
-            one.lo[axis] = grid.middle[axis] + (double(range.lo) - kGridMiddle) * grid.cell[axis];
-            one.hi[axis] = grid.middle[axis] + (double(range.hi) - kGridMiddle) * grid.cell[axis];
-        }
-        if (!one.empty())
-            box.add(one);
+    for (int axis = 0; axis < 3; ++axis) {
+        const GridRange range = range_of(words[size_t(axis)], child);
+        if (range.empty())
+            return Box();
+        box.lo[axis] = grid.middle[axis] + (double(range.lo) - kGridMiddle) * grid.cell[axis];
+        box.hi[axis] = grid.middle[axis] + (double(range.hi) - kGridMiddle) * grid.cell[axis];
     }
+    return box;
+}
+
+Box box_of(const Page& page) {
+    Box box;
+    for (uint32_t child = 0; child < 4; ++child)
+        box.add(child_box(page, OVC_ROOT_UNIT, child));
     return box;
 }
 

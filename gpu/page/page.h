@@ -36,6 +36,10 @@ struct Page {
     }
 };
 
+/// Returns the box of a child of a node, whose unit is in the page's view(), in the frame of the
+/// page's leaf. Empty where there is no such child.
+Box child_box(const Page& page, uint32_t node, uint32_t child);
+
 /// Returns the box of the page's tree, in the frame of its leaf. All triangles lie inside.
 Box box_of(const Page& page);
 

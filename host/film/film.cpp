@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <cstring>
 
 namespace ovc {
 
@@ -72,6 +73,30 @@ void Film::restore(std::span<const uint32_t> pixels, std::span<const Sums> sums)
         }
         done_.fetch_add(done_now, std::memory_order_relaxed);
     });
+}
+
+// The sums stand before a byte for each pixel, 1 where it is done.
+
+void Film::copy_tile(uint32_t number, std::span<std::byte, kTileBytes> bytes) const {
+    const Tile& tile = tile_of(number);
+    std::memcpy(bytes.data(), &tile.sums, sizeof(tile.sums));
+    std::byte* const done = bytes.data() + sizeof(tile.sums);
+    for (uint32_t i = 0; i < kTilePixels; ++i)
+        done[i] = std::byte(tile.answered[i] == samples_);
+}
+
+void Film::restore_tile(uint32_t number, std::span<const std::byte, kTileBytes> bytes) {
+    Tile& tile = tile_of(number);
+    const std::byte* const done = bytes.data() + sizeof(tile.sums);
+    uint64_t done_now = 0;
+    for (uint32_t i = 0; i < kTilePixels; ++i) {
+        if (done[i] == std::byte(0))
+            continue;
+        std::memcpy(&tile.sums[i], bytes.data() + i * sizeof(Sums), sizeof(Sums));
+        done_now += tile.answered[i] != samples_;
+        tile.answered[i] = samples_;
+    }
+    done_.fetch_add(done_now, std::memory_order_relaxed);
 }
 
 dvec3 Film::mean(uint32_t pixel) const {

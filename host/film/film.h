@@ -58,6 +58,17 @@ public:
     /// The same for several pixels, each named once. sums: one for each.
     void restore(std::span<const uint32_t> pixels, std::span<const Sums> sums);
 
+    /// How many tiles there are, which are numbered row by row.
+    uint32_t tile_count() const { return columns_ * rows_; }
+    /// What a tile has, as bytes between processes of one program.
+    static constexpr size_t kTileBytes = kTilePixels * (sizeof(Sums) + 1);
+    /// Writes which of the tile's pixels are done, and the sums of these. No ray of the tile is
+    /// under way.
+    void copy_tile(uint32_t tile, std::span<std::byte, kTileBytes> bytes) const;
+    /// Restores the pixels of the tile that are done in what copy_tile() wrote. Call it before any
+    /// ray of them is answered.
+    void restore_tile(uint32_t tile, std::span<const std::byte, kTileBytes> bytes);
+
     /// Returns the mean light of a pixel that is done.
     dvec3 mean(uint32_t pixel) const;
     /// Returns the picture, which the film outlives. Pixels that are not done are black, with
@@ -80,6 +91,10 @@ private:
         uint32_t pixel; // of the tile
     };
     Place place(uint32_t pixel) const;
+    Tile& tile_of(uint32_t number) const {
+        assert(number < tile_count());
+        return static_cast<Tile*>(tiles_.get())[number];
+    }
 
     std::atomic_ref<uint32_t> answered(uint32_t pixel) const {
         const Place at = place(pixel);
@@ -97,8 +112,7 @@ inline Film::Place Film::place(uint32_t pixel) const {
     assert(pixel < size_t(width_) * height_);
     const uint32_t x = pixel % width_, y = pixel / width_;
     const uint32_t down_bits = kTileBits - across_bits_;
-    Tile* const tiles = static_cast<Tile*>(tiles_.get());
-    return {tiles[size_t(y >> down_bits) * columns_ + (x >> across_bits_)],
+    return {tile_of((y >> down_bits) * columns_ + (x >> across_bits_)),
             (y & ((1u << down_bits) - 1)) << across_bits_ | (x & ((1u << across_bits_) - 1))};
 }
 

@@ -61,6 +61,30 @@ TEST(Film, APixelIsDoneWhenNoRayIsUnderWay) {
     EXPECT_EQ(film.pixels_done(), 2u);
 }
 
+/// Also where the film ends in the middle of the tile, and for a film of a single row.
+TEST(Film, ATileGoesToAnotherFilmWithThePixelsThatAreDone) {
+    for (const auto& [width, height] : {std::pair(40u, 50u), std::pair(1100u, 1u)}) {
+        Film from(width, height), to(width, height);
+        for (uint32_t pixel = 0; pixel < width * height; ++pixel) {
+            from.add(pixel, vec3(float(pixel)));
+            if (pixel % 3 != 0)
+                from.close(pixel);
+        }
+        to.restore(1, {7, 7, 7});
+        std::vector<std::byte> bytes(Film::kTileBytes);
+        const auto tile = std::span(bytes).first<Film::kTileBytes>();
+        for (uint32_t number = 0; number < from.tile_count(); ++number) {
+            from.copy_tile(number, tile);
+            to.restore_tile(number, tile);
+        }
+        EXPECT_EQ(to.pixels_done(), from.pixels_done());
+        for (uint32_t pixel = 0; pixel < width * height; ++pixel) {
+            ASSERT_EQ(to.done(pixel), from.done(pixel)) << pixel;
+            ASSERT_EQ(to.sums(pixel), pixel % 3 != 0 ? from.sums(pixel) : Film::Sums()) << pixel;
+        }
+    }
+}
+
 TEST(Film, WhatIsNoNumberIsDarkAndInfinityIsNotMore) {
     Film film(1, 1);
     film.add(0, vec3(std::numeric_limits<float>::quiet_NaN(),

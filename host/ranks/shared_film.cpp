@@ -3,6 +3,7 @@
 // force loses no more than a round.
 #include "host/ranks/shared_film.h"
 
+#include "core/system/parallel.h"
 #include "core/system/stopwatch.h"
 #include "host/terminal/message.h"
 
@@ -21,7 +22,7 @@ namespace {
 /// long pictures, which would have more than a few rounds, it has up to so many.
 constexpr uint64_t kRoundRays = uint64_t(1) << 20, kMaxRoundRays = uint64_t(1) << 24;
 constexpr uint64_t kFewRounds = 64, kMaxRounds = 4096;
-/// A rank sends so many parts of its pixels before rank 0 has taken the first.
+/// A rank sends so many parts of its tiles before rank 0 has taken the first.
 constexpr size_t kPartsUnderWay = 4;
 
 uint32_t rounds_for(uint64_t rays_a_rank) {
@@ -29,48 +30,32 @@ uint32_t rounds_for(uint64_t rays_a_rank) {
                              std::min(rays_a_rank / kMaxRoundRays, kMaxRounds)));
 }
 
-/// What a rank sends of pixels that all ranks know: whether they are complete, a byte for each that
-/// tells whether it is done, and the light of each.
-class PixelBytes {
+using Tiles = std::vector<uint32_t>;
+
+/// What a rank sends of tiles that all ranks know: these, and whether they are complete.
+class TileBytes {
 public:
-    static RankBytes of(const Film& film, std::span<const uint32_t> pixels, bool complete) {
-        RankBytes bytes(size_of(pixels.size()));
-        bytes[0] = std::byte(complete);
-        std::byte* const done = bytes.data() + 1;
-        std::byte* const light = done + pixels.size();
-        for (size_t i = 0; i < pixels.size(); ++i) {
-            done[i] = std::byte(film.done(pixels[i]));
-            const Film::Sums sums = film.sums(pixels[i]);
-            std::memcpy(light + i * sizeof(sums), &sums, sizeof(sums));
-        }
+    static RankBytes of(const Film& film, std::span<const uint32_t> tiles, bool complete) {
+        RankBytes bytes(size_of(tiles.size()));
+        for (size_t i = 0; i < tiles.size(); ++i)
+            film.copy_tile(tiles[i], std::span(bytes).subspan(i * kOne).first<kOne>());
+        bytes.back() = std::byte(complete);
         return bytes;
     }
-    /// Returns whether the pixels are complete.
-    static bool restore(std::span<const std::byte> bytes, std::span<const uint32_t> pixels,
+    /// Returns whether the tiles are complete.
+    static bool restore(std::span<const std::byte> bytes, std::span<const uint32_t> tiles,
                         Film& film) {
-        assert(bytes.size() == size_of(pixels.size()));
-        const std::byte* const done = bytes.data() + 1;
-        const std::byte* const light = done + pixels.size();
-        constexpr size_t kAtOnce = size_t(1) << 14;
-        std::vector<uint32_t> some;
-        std::vector<Film::Sums> sums;
-        for (size_t i = 0; i < pixels.size(); ++i) {
-            if (done[i] != std::byte(0)) {
-                some.push_back(pixels[i]);
-                std::memcpy(&sums.emplace_back(), light + i * sizeof(Film::Sums),
-                            sizeof(Film::Sums));
-            }
-            if (some.size() == kAtOnce || i + 1 == pixels.size()) {
-                film.restore(some, sums);
-                some.clear();
-                sums.clear();
-            }
-        }
-        return bytes[0] != std::byte(0);
+        assert(bytes.size() == size_of(tiles.size()));
+        parallel_for(tiles.size(), 4, [&](size_t first, size_t last) {
+            for (size_t i = first; i < last; ++i)
+                film.restore_tile(tiles[i], bytes.subspan(i * kOne).first<kOne>());
+        });
+        return bytes.back() != std::byte(0);
     }
 
 private:
-    static size_t size_of(size_t pixels) { return 1 + pixels * (1 + sizeof(Film::Sums)); }
+    static constexpr size_t kOne = Film::kTileBytes;
+    static size_t size_of(size_t tiles) { return tiles * kOne + 1; }
 };
 
 class SharedFilm {
@@ -123,8 +108,6 @@ private:
         return Done{};
     }
 
-    using Tiles = std::vector<uint32_t>;
-
     /// Returns each rank's tiles of a round, whether they were done before or not.
     std::vector<Tiles> tiles_of_ranks(uint32_t round) const {
         std::vector<Tiles> tiles(ranks_.count());
@@ -165,10 +148,10 @@ private:
         return done->complete;
     }
 
-    /// Brings the pixels of all ranks to rank 0, and all of them to all ranks where these want
+    /// Brings the tiles of all ranks to rank 0, and all of them to all ranks where these want
     /// them. complete: whether those of this rank are. They go in parts, of which a few are on the
     /// way: nobody waits for messages, and rank 0 needs little room, however large the film. The
-    /// first part has no pixels: when it is over, all ranks have traced theirs.
+    /// first part has no tiles: when it is over, all ranks have traced theirs.
     Result<Done> exchange(std::span<const Tiles> tiles, uint32_t round, bool complete) {
         const std::vector<Tiles> none(ranks_.count());
         if (const Result<Done> traced = gather_part(none, 0, 0, complete); !traced)
@@ -187,7 +170,7 @@ private:
         if (!options_.to_all || !report_.complete)
             return Done{};
         const auto all = tiles_.tiles([&](uint32_t tile) { return round_of_tile_[tile] == round; });
-        const Result<Done> told = tell_of_first(tiles_.pixels(all), complete);
+        const Result<Done> told = tell_of_first(all, complete);
         return told ? told : stop(told.error());
     }
 
@@ -211,31 +194,30 @@ private:
         return Done{};
     }
 
-    /// Brings the pixels of `count` tiles of each rank to rank 0. complete: whether this rank's
+    /// Brings `count` tiles of each rank to rank 0. complete: whether this rank's
     /// are; on rank 0, whether those of all ranks are.
     Result<Done> gather_part(std::span<const Tiles> tiles, size_t first, size_t count,
                              bool& complete) {
-        const auto pixels_of = [&](uint32_t rank) {
+        const auto some_of = [&](uint32_t rank) {
             const std::span<const uint32_t> all = tiles[rank];
             const size_t from = std::min(first, all.size());
-            return tiles_.pixels(all.subspan(from, std::min(count, all.size() - from)));
+            return all.subspan(from, std::min(count, all.size() - from));
         };
-        const std::vector<uint32_t> mine =
-            ranks_.is_first() ? std::vector<uint32_t>() : pixels_of(ranks_.rank());
-        return ranks_.gather(PixelBytes::of(film_, mine, complete), goes_on(),
+        const auto mine = ranks_.is_first() ? std::span<const uint32_t>() : some_of(ranks_.rank());
+        return ranks_.gather(TileBytes::of(film_, mine, complete), goes_on(),
                              [&](uint32_t rank, std::span<const std::byte> bytes) {
                                  if (rank != 0)
-                                     complete &= PixelBytes::restore(bytes, pixels_of(rank), film_);
+                                     complete &= TileBytes::restore(bytes, some_of(rank), film_);
                              });
     }
 
-    /// Brings these pixels of rank 0 to all ranks, and whether all are complete.
-    Result<Done> tell_of_first(std::span<const uint32_t> pixels, bool complete) {
+    /// Brings these tiles of rank 0 to all ranks, and whether all are complete.
+    Result<Done> tell_of_first(std::span<const uint32_t> tiles, bool complete) {
         const Result<RankBytes> spread = ranks_.spread(
-            ranks_.is_first() ? PixelBytes::of(film_, pixels, complete) : RankBytes(), goes_on());
+            ranks_.is_first() ? TileBytes::of(film_, tiles, complete) : RankBytes(), goes_on());
         if (!spread)
             return spread.error();
-        report_.complete = PixelBytes::restore(*spread, pixels, film_);
+        report_.complete = TileBytes::restore(*spread, tiles, film_);
         return Done{};
     }
 
@@ -288,14 +270,14 @@ Result<Done> spread_film(const Ranks& ranks, Film& film) {
         return begun.error();
     else if (begun->empty())
         return Done{};
-    std::vector<uint32_t> all(size_t(film.width()) * film.height());
+    Tiles all(film.tile_count());
     std::iota(all.begin(), all.end(), 0u);
     const Result<RankBytes> spread = ranks.spread(
-        ranks.is_first() ? PixelBytes::of(film, all, /* complete= */ true) : RankBytes(),
+        ranks.is_first() ? TileBytes::of(film, all, /* complete= */ true) : RankBytes(),
         goes_on_always);
     if (!spread)
         return spread.error();
-    PixelBytes::restore(*spread, all, film);
+    TileBytes::restore(*spread, all, film);
     return Done{};
 }
 

@@ -128,8 +128,8 @@ public:
     bool hits(RayStream& stream, std::span<const uint64_t> tokens,
               std::span<const Hit> hits) override {
         const Stopwatch watch;
-        shade_paths(stream, tokens, hits);
-        pass_shadows(stream, tokens, hits);
+        shade_paths(stream, selected(paths_, {tokens, hits}));
+        pass_shadows(stream, selected(shadows_, {tokens, hits}));
         return go_on(watch);
     }
 
@@ -142,38 +142,43 @@ public:
     }
 
 private:
-    void shade_paths(RayStream& stream, std::span<const uint64_t> tokens,
-                     std::span<const Hit> hits) {
-        select(paths_, tokens, hits);
-        paths_.take(tokens_, answered_paths_);
-        for (size_t first = 0; first < hits_.size(); first += shading_.max_answers()) {
-            shading_.shade(answered_paths_, hits_, first,
-                           std::min(shading_.max_answers(), hits_.size() - first), spawned_);
+    /// Answers to rays of one kind.
+    struct Answers {
+        std::span<const uint64_t> tokens;
+        std::span<const Hit> hits;
+    };
+
+    void shade_paths(RayStream& stream, const Answers& paths) {
+        paths_.take(paths.tokens, answered_paths_);
+        for (size_t first = 0; first < paths.hits.size(); first += shading_.max_answers()) {
+            shading_.shade(answered_paths_, paths.hits, first,
+                           std::min(shading_.max_answers(), paths.hits.size() - first), spawned_);
             push_spawned(stream);
         }
     }
 
     /// Takes shadow rays through surfaces that light may pass, and pushes those that go on.
-    void pass_shadows(RayStream& stream, std::span<const uint64_t> tokens,
-                      std::span<const Hit> hits) {
-        select(shadows_, tokens, hits);
-        shadows_.take(tokens_, answered_shadows_);
-        shading_.pass(answered_shadows_, hits_);
+    void pass_shadows(RayStream& stream, const Answers& shadows) {
+        shadows_.take(shadows.tokens, answered_shadows_);
+        shading_.pass(answered_shadows_, shadows.hits);
         report_.rays.shadow += answered_shadows_.size();
         shadows_.push(stream, answered_shadows_);
     }
 
-    /// Copies the answers to rays of this kind into tokens_ and hits_.
+    /// Returns those of the answers that are to rays of this kind, copied where not all are.
     template <class Purpose>
-    void select(const RaysUnderWay<Purpose>& kind, std::span<const uint64_t> tokens,
-                std::span<const Hit> hits) {
+    Answers selected(const RaysUnderWay<Purpose>& kind, const Answers& all) {
+        const auto is_of_kind = [&](uint64_t token) { return kind.has(token); };
+        if (std::ranges::all_of(all.tokens, is_of_kind))
+            return all;
         tokens_.clear();
         hits_.clear();
-        for (size_t i = 0; i < tokens.size(); ++i)
-            if (kind.has(tokens[i])) {
-                tokens_.push_back(tokens[i]);
-                hits_.push_back(hits[i]);
+        for (size_t i = 0; i < all.tokens.size(); ++i)
+            if (is_of_kind(all.tokens[i])) {
+                tokens_.push_back(all.tokens[i]);
+                hits_.push_back(all.hits[i]);
             }
+        return {tokens_, hits_};
     }
 
     void push_spawned(RayStream& stream) {

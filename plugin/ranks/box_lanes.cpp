@@ -140,14 +140,30 @@ RayPacket::RayPacket(std::span<const Ray> rays) {
     is_bounded_ = are_ordered && are_finite && is_one_way;
 }
 
-BoxLanes::BoxLanes(std::span<const Box> boxes) {
-    for (const Box& box : boxes) {
-        Eight one = nowhere();
-        for (int axis = 0; axis < 3; ++axis) {
-            one.sides[axis][0] = box.lo[axis];
-            one.sides[3 + axis][0] = box.hi[axis];
-        }
-        add(one, 0);
+/// Sets a lane to the box.
+static void put(const Box& box, Eight& lanes, size_t lane) {
+    for (int axis = 0; axis < 3; ++axis) {
+        lanes.sides[axis][lane] = box.lo[axis];
+        lanes.sides[3 + axis][lane] = box.hi[axis];
+    }
+}
+
+/// Appends the box. size: how many there are.
+static void append(const Box& box, size_t size, std::vector<Eight>& lanes) {
+    if (size % kLanes == 0)
+        lanes.push_back(nowhere());
+    put(box, lanes.back(), size % kLanes);
+}
+
+BoxLanes::BoxLanes(std::span<const Box> boxes) : boxes_(boxes.size()) {
+    for (size_t i = 0; i < boxes.size(); ++i)
+        append(boxes[i], i, lanes_);
+    for (size_t i = 0; i < lanes_.size(); ++i) {
+        Box around;
+        for (const Box& box :
+             boxes.subspan(i * kLanes, std::min(kLanes, boxes.size() - i * kLanes)))
+            around.add(box);
+        append(around, i, around_);
     }
 }
 
@@ -168,19 +184,28 @@ double BoxLanes::enter(const EnteringRay& ray) const {
     return entries[0];
 }
 
+/// Calls visit(lane, entry) for the boxes that rays of the packet may enter.
+template <class Visit>
+static void for_each_entered(const RayPacket& packet, const Eight& lanes, Visit&& visit) {
+    Entries entries;
+    kernels.enter_packet(packet, lanes, entries);
+    for (size_t lane = 0; lane < kLanes; ++lane)
+        if (entries[lane] != kNoEntry)
+            visit(lane, entries[lane]);
+}
+
 double BoxLanes::enter(const RayPacket& packet, BoxLanes& some) const {
     assert(packet.is_bounded());
     some.clear();
     double min = kNoEntry;
-    for (const Eight& lanes : lanes_) {
-        Entries entries;
-        kernels.enter_packet(packet, lanes, entries);
-        for (size_t i = 0; i < kLanes; ++i)
-            if (entries[i] != kNoEntry) {
-                min = std::min(min, entries[i]);
-                some.add(lanes, i);
-            }
-    }
+    for (size_t i = 0; i < around_.size(); ++i)
+        for_each_entered(packet, around_[i], [&](size_t group, double) {
+            const Eight& lanes = lanes_[i * kLanes + group];
+            for_each_entered(packet, lanes, [&](size_t lane, double entry) {
+                min = std::min(min, entry);
+                some.add(lanes, lane);
+            });
+        });
     return min;
 }
 

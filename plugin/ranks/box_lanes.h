@@ -52,7 +52,7 @@ public:
     /// Returns the smallest entry of the ray into any of the boxes.
     double enter(const EnteringRay& ray) const;
     /// Returns a lower bound of the entries of all rays of a bounded packet; kNoEntry only where
-    /// none of them enters a box. some: gets the boxes that any of them may enter.
+    /// none of them enters a box. some: gets the boxes that any of them may enter, for rays.
     double enter(const RayPacket& packet, BoxLanes& some) const;
 
 private:
@@ -60,7 +60,8 @@ private:
     void add(const Eight& from, size_t lane);
 
     size_t boxes_ = 0;
-    std::vector<Eight> lanes_; // filled up with boxes that no ray enters
+    std::vector<Eight> lanes_;  // filled up with boxes that no ray enters
+    std::vector<Eight> around_; // a box for each of these, where packets are to be tested
 };
 
 } // namespace ovc

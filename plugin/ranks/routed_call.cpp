@@ -19,6 +19,9 @@ namespace ovc {
 namespace {
 
 constexpr size_t kBlock = 4096; // rays
+/// So many blocks, and one a thread at least, are begun together, so that short calls are sent as
+/// one message.
+constexpr size_t kMinBlocks = 2;
 
 /// A message has so many visits at most, and at least so many while more rays are to come: enough
 /// that its cost is that of its bytes, and so few that other ranks begin early.
@@ -68,7 +71,7 @@ bool RoutedCall::find_stops() {
     if (next_block_ == blocks)
         return false;
     const size_t first = next_block_;
-    next_block_ = std::min(blocks, first + thread_count());
+    next_block_ = std::min(blocks, first + std::max(thread_count(), kMinBlocks));
     begin_blocks(first, next_block_);
     send_off(next_block_ == blocks ? 1 : kMinMessage);
     return true;

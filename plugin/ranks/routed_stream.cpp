@@ -43,35 +43,19 @@ std::optional<std::vector<uint32_t>> dropped_hits(std::span<const uint32_t> rays
     return out;
 }
 
-/// Rays of one kind, and what belongs to each; the last five may be empty.
+/// Rays of one kind, and their answers.
 struct RoutedStream::Batch {
     Batch(const Routing& ranks, RoutedCounts& counts) : call(ranks, counts) {}
 
     RoutedCall call;
     bool is_under_way = false;
     bool any_hit = false;
-    std::vector<Ray> rays;
-    std::vector<TriangleId> skip;
-    std::vector<uint64_t> tokens;
-    std::vector<Hit> after;
-    std::vector<uint32_t> masks;
-    std::vector<HitFilter*> filters;
+    Backlog taken;
     std::vector<Hit> hits; // those of rays that ask for any, too, where they have filters
     std::vector<uint8_t> occluded;
+    std::vector<uint64_t> kept; // the tokens of the rays whose hits the filters kept
 
-    void take(const StreamRays& from) {
-        rays.assign(from.rays.begin(), from.rays.end());
-        skip.assign(from.skip.begin(), from.skip.end());
-        tokens.assign(from.tokens.begin(), from.tokens.end());
-        after.assign(from.after.begin(), from.after.end());
-        masks.assign(from.masks.begin(), from.masks.end());
-        filters.assign(from.filters.begin(), from.filters.end());
-    }
-    /// Moves ray `from` to the place of ray `to`, which does not lie behind it.
-    void move(size_t from, size_t to) {
-        tokens[to] = tokens[from];
-        hits[to] = hits[from];
-    }
+    StreamRays rays() const { return taken.last(taken.size()); }
 };
 
 RoutedStream::RoutedStream(const Routing& ranks, RoutedCounts& counts, StreamHost& host)
@@ -142,16 +126,16 @@ Result<Done> RoutedStream::begin_batches() {
 
 void RoutedStream::begin(Batch& batch, Backlog& backlog, bool any_hit) {
     const size_t count = std::min(backlog.size(), max_rays_);
-    batch.take(backlog.last(count));
-    backlog.drop_last(count);
+    backlog.move_last(count, batch.taken);
+    const StreamRays rays = batch.rays();
     batch.any_hit = any_hit;
     batch.is_under_way = true;
-    const bool wants_hits = !any_hit || !batch.filters.empty();
+    const bool wants_hits = !any_hit || !rays.filters.empty();
     batch.hits.resize(wants_hits ? count : 0);
     batch.occluded.resize(any_hit ? count : 0);
-    Exclusions without(batch.skip, batch.after);
-    without.sieves.masks = batch.masks;
-    batch.call.begin({batch.rays, without, batch.hits,
+    Exclusions without(rays.skip, rays.after);
+    without.sieves.masks = rays.masks;
+    batch.call.begin({rays.rays, without, batch.hits,
                       wants_hits ? std::span<uint8_t>() : std::span<uint8_t>(batch.occluded)});
     while (batch.call.find_stops()) {
     }
@@ -168,49 +152,50 @@ bool RoutedStream::on_host(Call&& call) {
 /// Hands a batch's answers to the host.
 Result<Done> RoutedStream::deliver(Batch& batch) {
     batch.is_under_way = false;
-    if (!batch.filters.empty())
+    std::span<const uint64_t> tokens = batch.rays().tokens;
+    if (!batch.rays().filters.empty()) {
         if (const Result<Done> done = send_dropped_on(batch); !done)
             return done;
-    if (batch.any_hit && !batch.filters.empty()) {
-        batch.occluded.resize(batch.hits.size());
-        std::ranges::transform(batch.hits, batch.occluded.begin(), &Hit::is_hit);
+        tokens = batch.kept;
+        if (batch.any_hit) {
+            batch.occluded.resize(batch.hits.size());
+            std::ranges::transform(batch.hits, batch.occluded.begin(), &Hit::is_hit);
+        }
     }
-    const bool goes_on = batch.tokens.empty() || on_host([&] {
-                             return batch.any_hit
-                                        ? host_.occlusions(*this, batch.tokens, batch.occluded)
-                                        : host_.hits(*this, batch.tokens, batch.hits);
+    const bool goes_on = tokens.empty() || on_host([&] {
+                             return batch.any_hit ? host_.occlusions(*this, tokens, batch.occluded)
+                                                  : host_.hits(*this, tokens, batch.hits);
                          });
     return goes_on ? Result<Done>(Done{}) : stopped_by_host();
 }
 
-/// Lets rays go on behind the hits that their filters drop, and takes them out of the batch.
+/// Lets rays go on behind the hits that their filters drop. What is left are the tokens and hits of
+/// the others.
 Result<Done> RoutedStream::send_dropped_on(Batch& batch) {
-    std::vector<uint32_t> all(batch.rays.size());
+    const StreamRays rays = batch.rays();
+    std::vector<uint32_t> all(rays.rays.size());
     std::iota(all.begin(), all.end(), 0u);
-    const Sieves sieves{batch.masks, batch.filters, batch.tokens};
-    const auto dropped = dropped_hits(all, sieves, batch.hits);
+    const auto dropped =
+        dropped_hits(all, Sieves{rays.masks, rays.filters, rays.tokens}, batch.hits);
     if (!dropped)
         return Error{"the filter stopped the call", ErrorKind::Cancelled};
     Backlog& backlog = batch.any_hit ? any_ : nearest_;
-    size_t kept = 0, next = 0;
+    batch.kept.clear();
+    size_t next = 0;
     for (uint32_t i = 0; i < all.size(); ++i) {
         if (next == dropped->size() || (*dropped)[next] != i) {
-            batch.move(i, kept++);
+            batch.hits[batch.kept.size()] = batch.hits[i];
+            batch.kept.push_back(rays.tokens[i]);
             continue;
         }
         ++next;
-        const uint32_t mask = batch.masks.empty() ? 0 : batch.masks[i];
-        StreamRays ray{batch.any_hit,
-                       {&batch.rays[i], 1},
-                       {&batch.skip[i], 1},
-                       {&batch.tokens[i], 1},
-                       {&batch.hits[i], 1}};
-        ray.masks = batch.masks.empty() ? ray.masks : std::span(&mask, 1);
-        ray.filters = {&batch.filters[i], 1};
+        StreamRays ray{batch.any_hit, rays.rays.subspan(i, 1), rays.skip.subspan(i, 1),
+                       rays.tokens.subspan(i, 1), std::span(batch.hits).subspan(i, 1)};
+        ray.masks = rays.masks.empty() ? rays.masks : rays.masks.subspan(i, 1);
+        ray.filters = rays.filters.subspan(i, 1);
         backlog.push(ray);
     }
-    batch.tokens.resize(kept);
-    batch.hits.resize(kept);
+    batch.hits.resize(batch.kept.size());
     return Done{};
 }
 

@@ -212,25 +212,6 @@ std::vector<uint32_t> best_owners(const Pages& pages, const std::vector<uint32_t
 
 } // namespace
 
-std::vector<PageBox> page_boxes(const BuiltScene& scene) {
-    std::vector<PageBox> boxes;
-    const auto around = [](const Level1& level1, const Leaf& leaf) {
-        return leaf.box.padded(level1.padding + leaf.box.rounding());
-    };
-    for (size_t i = 0; i < scene.level1.leaves.size(); ++i)
-        boxes.push_back({around(scene.level1, scene.level1.leaves[i]), uint32_t(i)});
-    for (const SharedMesh& mesh : scene.shared)
-        for (size_t i = 0; i < mesh.scene.level1.leaves.size(); ++i)
-            for (const uint32_t place : mesh.places) {
-                const Level1& level1 = mesh.scene.level1;
-                // Leaves of a mesh at rest lie where it came to rest.
-                const Box box = mesh.rest ? mesh.box : around(level1, level1.leaves[i]);
-                boxes.push_back({placed_box(box, scene.soup.chunks[place].transform()),
-                                 mesh.first_page + uint32_t(i)});
-            }
-    return boxes;
-}
-
 /// Gives the pages of meshes that are placed several times to every rank, while there is room.
 /// Returns the room that is left.
 static uint64_t give_instances_to_all(const BuiltScene& scene, uint64_t room,

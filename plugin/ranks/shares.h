@@ -3,27 +3,14 @@
 // scene, so nothing is sent for it.
 #pragma once
 
-#include "core/box.h"
 #include "core/ray.h"
-#include "plugin/build/built_scene.h"
+#include "plugin/ranks/page_boxes.h"
 
 #include <cstdint>
 #include <span>
 #include <vector>
 
 namespace ovc {
-
-/// The owner of a page that every rank has.
-inline constexpr uint32_t kEveryRank = kNone;
-
-/// Where a page lies in the world: once, or once for each instance of its mesh.
-struct PageBox {
-    Box box; // every hit of the page's triangles there lies in it
-    uint32_t page;
-};
-
-/// Returns the boxes of all pages, in the order of pages. The scene has no top-level tree yet.
-std::vector<PageBox> page_boxes(const BuiltScene& scene);
 
 struct ShareOptions {
     uint32_t ranks = 1;

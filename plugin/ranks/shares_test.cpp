@@ -3,6 +3,8 @@
 #include "plugin/ranks/shares.h"
 
 #include "kdtree/test_soups.h"
+#include "plugin/build/build_scene.h"
+#include "plugin/fallback/exact_fallback.h"
 #include "plugin/ranks/box_entry.h"
 #include "plugin/ranks/stops.h"
 
@@ -10,6 +12,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <numeric>
 
 namespace ovc {
@@ -79,15 +82,14 @@ TEST(StopFinder, FindsEveryRankOfTheBoxesOnTheWay) {
     test::Random random(2);
     constexpr uint32_t kRanks = 7, kHere = 3;
     for (const int spread : {1, 50}) { // ranks have pages all over, or in a corner each
-        std::vector<PageBox> boxes;
-        std::vector<uint32_t> owners;
-        for (uint32_t page = 0; page < 700; ++page) {
-            owners.push_back(page % 50 ? uint32_t(random.below(kRanks)) : kEveryRank);
-            const double corner = spread == 1 ? 0 : double(page % kRanks);
+        std::vector<OwnedBox> boxes;
+        for (uint32_t i = 0; i < 700; ++i) {
+            const double corner = spread == 1 ? 0 : double(i % kRanks);
             const dvec3 at = random.point(-1, 1) / double(spread) + corner / kRanks;
-            boxes.push_back({{at, at + random.point(0, 0.1) / double(spread)}, page});
+            boxes.push_back({{at, at + random.point(0, 0.1) / double(spread)},
+                             i % 50 ? uint32_t(random.below(kRanks)) : kEveryRank});
         }
-        const StopFinder finder(boxes, owners, kHere);
+        const StopFinder finder(boxes, kHere);
         for (int i = 0; i < 300; ++i) {
             const std::vector<Ray> rays = packet_of_rays(random, i);
             std::vector<Stop> all;
@@ -102,15 +104,14 @@ TEST(StopFinder, FindsEveryRankOfTheBoxesOnTheWay) {
                     continue;
                 }
                 std::vector<double> first(kRanks, kNoEntry);
-                for (const PageBox& box : boxes) {
-                    const uint32_t owner = owners[box.page];
-                    double& min = first[owner == kEveryRank ? kHere : owner];
+                for (const OwnedBox& box : boxes) {
+                    double& min = first[box.owner == kEveryRank ? kHere : box.owner];
                     min = std::min(min, box_entry(rays[j], box.box));
                 }
                 for (uint32_t rank = 0; rank < kRanks; ++rank) {
                     EXPECT_LE(std::ranges::count(stops, rank, &Stop::rank), 1);
                     if (first[rank] == kNoEntry)
-                        continue; // a part around several boxes may be met where they are not
+                        continue; // its packet was found to come by this rank alone
                     const auto found = std::ranges::find(stops, rank, &Stop::rank);
                     ASSERT_NE(found, stops.end());
                     EXPECT_LE(found->t, first[rank] * (1 + 1e-15) + 1e-300);
@@ -123,9 +124,8 @@ TEST(StopFinder, FindsEveryRankOfTheBoxesOnTheWay) {
 
 /// Where all boxes that a packet comes by are of this rank, or none are, no ray is looked at alone.
 TEST(StopFinder, LeavesOutRanksThatAPacketDoesNotComeBy) {
-    const std::vector<PageBox> boxes = {{{dvec3(0), dvec3(1)}, 0}, {{dvec3(5), dvec3(6)}, 1}};
-    const std::vector<uint32_t> owners = {0, 1};
-    const StopFinder finder(boxes, owners, /* here= */ 0);
+    const std::vector<OwnedBox> boxes = {{{dvec3(0), dvec3(1)}, 0}, {{dvec3(5), dvec3(6)}, 1}};
+    const StopFinder finder(boxes, /* here= */ 0);
     std::vector<Stop> stops;
     std::vector<uint32_t> ends(2);
     const std::vector<Ray> to_0 = {{{0.2, 0.2, -3}, 0, {0, 0, 1}}, {{0.3, 0.2, -3}, 0, {0, 0, 1}}};
@@ -142,11 +142,64 @@ TEST(StopFinder, LeavesOutRanksThatAPacketDoesNotComeBy) {
     EXPECT_EQ(finder.first_owner(away[0]), kNone);
 }
 
+/// Expects that rays come into a box of a rank that has the triangle they hit, before they do.
+/// Returns how many hit any.
+int expect_boxes_around_hits(const BuiltScene& scene, std::span<const uint32_t> owners,
+                             const std::map<uint32_t, std::vector<Box>>& boxes,
+                             test::Random& random) {
+    const Box& around = scene.level1.bounds;
+    const double size = max_component(around.extent());
+    int hits = 0;
+    for (int i = 0; i < 300; ++i) {
+        const dvec3 to = around.center() + random.point(-0.5, 0.5) * around.extent();
+        Ray ray;
+        ray.org = to + random.point(-1, 1) * size;
+        ray.dir = to - ray.org;
+        const Hit hit = trace_exactly<false>(scene, PreparedRay(ray));
+        if (!hit.is_hit())
+            continue;
+        double entry = kNoEntry;
+        for (size_t page = 0; page < owners.size(); ++page)
+            if (std::ranges::binary_search(scene.level1.leaves[page].list(), hit.id))
+                for (const Box& box : boxes.at(owners[page]))
+                    entry = std::min(entry, box_entry(ray, box));
+        EXPECT_LE(entry, hit.t);
+        ++hits;
+    }
+    return hits;
+}
+
+/// With several pages a box, a box a page, and many boxes in each page.
+TEST(OwnedBoxes, LieAroundEveryHit) {
+    TwoLevelOptions options;
+    options.leaves = 20;
+    const MemoryPlan room{.pool_bytes = uint64_t(1) << 30, .buffer_bytes = uint64_t(1) << 30};
+    test::Random random(3);
+    int hits = 0;
+    for (const auto& [name, soup] : test::unpleasant_soups()) {
+        SCOPED_TRACE(name);
+        const Result<BuiltScene> scene = build_scene(soup, options, room, {}, nullptr);
+        ASSERT_TRUE(scene) << scene.error().message;
+        std::vector<uint32_t> owners;
+        for (uint32_t page = 0; page < scene->pages.size(); ++page)
+            owners.push_back(page % 5 ? page % 3 : kEveryRank);
+        for (const size_t max : {2, 7, 500}) {
+            std::map<uint32_t, std::vector<Box>> boxes;
+            for (const OwnedBox& box : owned_boxes(*scene, owners, max))
+                boxes[box.owner].push_back(box.box);
+            for (const auto& [owner, all] : boxes)
+                EXPECT_LE(all.size(), max);
+            hits += expect_boxes_around_hits(*scene, owners, boxes, random);
+        }
+    }
+    EXPECT_GT(hits, 1000);
+}
+
 TEST(StopFinder, KnowsNoStopsWhereThereAreNoPages) {
     std::vector<Stop> stops;
     std::vector<uint32_t> ends(1, 7);
     const Ray ray;
-    StopFinder({}, {}, 0).find({&ray, 1}, stops, ends);
+    StopFinder({}, 0).find({&ray, 1}, stops, ends);
     EXPECT_TRUE(stops.empty());
     EXPECT_EQ(ends[0], 0u);
 }

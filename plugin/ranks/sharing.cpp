@@ -9,6 +9,12 @@ namespace ovc {
 /// Shares of fewer leaves a rank differ much.
 static constexpr uint64_t kFewLeaves = 4;
 
+/// How many boxes there are around what a rank has. More of them send fewer rays to ranks in vain,
+/// and take longer to test.
+static size_t max_boxes_of_rank(uint32_t ranks) {
+    return std::max<size_t>(256 / ranks, 32);
+}
+
 bool Sharing::fits(const BuiltScene& scene) const {
     const uint64_t bytes = scene.level2_bytes();
     const uint64_t rest = options_.gpu_bytes / 4; // for rays, answers and the top-level tree
@@ -27,9 +33,9 @@ PagesKept Sharing::choose(const BuiltScene& scene) {
                 "{} leaves for {} ranks: their shares will differ much; with smaller leaves "
                 "they would not",
                 scene.pages.size(), ranks));
-    const std::vector<PageBox> boxes = page_boxes(scene);
-    const std::vector<uint32_t> owners = share_out(scene, boxes, options_.shares);
-    finder_ = std::make_unique<StopFinder>(boxes, owners, options_.rank);
+    const std::vector<uint32_t> owners = share_out(scene, page_boxes(scene), options_.shares);
+    finder_ = std::make_unique<StopFinder>(owned_boxes(scene, owners, max_boxes_of_rank(ranks)),
+                                           options_.rank);
     PagesKept kept(owners.size());
     for (size_t page = 0; page < owners.size(); ++page)
         kept[page] = owners[page] == kEveryRank || owners[page] == options_.rank;

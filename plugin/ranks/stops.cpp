@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Joins the boxes of each rank to a few, and tests rays with them: first a packet with all of them,
-// then each of its rays with those that are left, where these are of several ranks.
+// Tests rays with the boxes of each rank: first a packet with all of them, then each of its rays
+// with those that are left, where these are of several ranks.
 #include "plugin/ranks/stops.h"
 
 #include <algorithm>
@@ -10,27 +10,12 @@
 
 namespace ovc {
 
-/// How many boxes there are around the pages of a rank. More of them send fewer rays to ranks in
-/// vain, and take longer to test.
-static constexpr size_t kPartsPerRank = 32;
-
-StopFinder::StopFinder(std::span<const PageBox> boxes, std::span<const uint32_t> owners,
-                       uint32_t here)
-    : here_(here) {
+StopFinder::StopFinder(std::span<const OwnedBox> boxes, uint32_t here) : here_(here) {
     std::map<uint32_t, std::vector<Box>> of_owner;
-    for (const PageBox& box : boxes)
-        of_owner[owners[box.page]].push_back(box.box);
-    for (const auto& [owner, all] : of_owner) {
-        // Pages stand in the order of the KD-tree, so that neighbours lie together.
-        const size_t group = (all.size() + kPartsPerRank - 1) / kPartsPerRank;
-        std::vector<Box> few;
-        for (size_t first = 0; first < all.size(); first += group) {
-            Box& part = few.emplace_back();
-            for (size_t i = first; i < std::min(all.size(), first + group); ++i)
-                part.add(all[i]);
-        }
-        parts_.push_back({owner, BoxLanes(few)});
-    }
+    for (const OwnedBox& box : boxes)
+        of_owner[box.owner].push_back(box.box);
+    for (const auto& [owner, all] : of_owner)
+        parts_.push_back({owner, BoxLanes(all)});
     for (const Part& part : parts_)
         all_.push_back(&part);
 }

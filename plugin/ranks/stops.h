@@ -4,7 +4,7 @@
 
 #include "core/ray.h"
 #include "plugin/ranks/box_lanes.h"
-#include "plugin/ranks/shares.h"
+#include "plugin/ranks/page_boxes.h"
 
 #include <cstdint>
 #include <span>
@@ -21,11 +21,11 @@ struct Stop {
 /// Boxes around the pages of each rank.
 class StopFinder {
 public:
-    /// owners: of each page. here: the rank that stands for every rank, where all have a page.
-    StopFinder(std::span<const PageBox> boxes, std::span<const uint32_t> owners, uint32_t here);
+    /// here: the rank that stands for every rank, where all have a page.
+    StopFinder(std::span<const OwnedBox> boxes, uint32_t here);
 
     /// So many rays are looked at together before each is by itself: neighbours, best of all.
-    static constexpr size_t kPacket = 32;
+    static constexpr size_t kPacket = 64;
 
     /// Appends the stops of at most kPacket rays, ray after ray, by t and then by rank; a rank
     /// stands there once for a ray. An invalid ray has `here` as its stop. Sets ends[i] to
@@ -38,7 +38,7 @@ public:
 private:
     struct Part {
         uint32_t owner = kNone; // kEveryRank: of pages that all ranks have
-        BoxLanes boxes;         // a few around them
+        BoxLanes boxes;         // around them
     };
 
     void find(const Ray& ray, std::span<const Part* const> parts, std::vector<Stop>& stops) const;
