@@ -49,10 +49,8 @@ protected:
         std::vector<Answer> answers(rays.size());
         gl->run([&](GlState&) {
             SentRays rays_sent = send(tracer->form(), states);
-            const Result<Done> sent = tracer->submit(rays_sent);
-            ASSERT_TRUE(sent) << sent.error().message;
-            const Result<Done> back = tracer->collect(answers);
-            ASSERT_TRUE(back) << back.error().message;
+            const Result<Done> traced = tracer->trace(rays_sent, answers);
+            ASSERT_TRUE(traced) << traced.error().message;
             EXPECT_GT(tracer->kernel_seconds(), 0);
         });
         return answers;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // OnePass: answers a query where all pages are resident, so that one pass of the kernel answers a
-// ray. Beside the pass of one part of the rays, the part before is resolved and the next one is
-// made ready.
+// ray. Beside the passes of some parts of the rays, the part before them is resolved and the next
+// one is made ready.
 #pragma once
 
 #include "plugin/two_level/pass_runner.h"
@@ -26,35 +26,39 @@ public:
 
     Result<Done> run() {
         assert(passes_.all_resident());
-        Batch* now = &passes_.batches()[0];
-        Batch* other = &passes_.batches()[1];
-        other->rays.clear();
-        begin(*now);
-        size_t traced = 0;
-        while (!now->rays.empty()) {
+        passes_.forget_passes();
+        Batch* answered = nullptr;
+        begin(passes_.batch(0));
+        for (size_t step = 0; is_left(step); ++step) {
+            const size_t traced = answered ? answered->begun : 0;
             if (Result<Done> asked = watch_.go_on(traced, query_.rays.size()); !asked)
                 return asked;
-            const size_t begun = next_;
-            const Result<size_t> moved = passes_.pass(*now, {}, [&] {
-                resolve(*other);
-                begin(*other);
+            const Result<PassRunner::Step> done = passes_.pass(passes_.batch(step), {}, [&] {
+                if (answered)
+                    resolve(*answered);
+                begin(passes_.batch(step + 1));
             });
-            if (!moved)
-                return moved.error();
-            traced = begun;
-            std::swap(now, other);
+            if (!done)
+                return done.error();
+            answered = done->answered;
         }
-        resolve(*other);
+        if (answered)
+            resolve(*answered);
         return Done{};
     }
 
 private:
+    bool is_left(size_t step) {
+        return !passes_.batch(step).rays.empty() || passes_.are_under_way();
+    }
+
     /// Fills the batch with the next rays of the query that the kernel is to be asked about, or
     /// with none where all have begun.
     void begin(Batch& batch) {
         batch.rays.clear();
         while (batch.rays.empty() && next_ < query_.rays.size())
             begin_part(batch);
+        batch.begun = next_;
     }
 
     void resolve(const Batch& batch) {

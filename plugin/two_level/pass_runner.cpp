@@ -170,6 +170,7 @@ Result<Done> PassRunner::update(const MemoryPlan& plan, const PageChanges& chang
 
 void PassRunner::purge() {
     share_.close();
+    under_way_.clear();
     batches_ = {};
 }
 
@@ -286,51 +287,81 @@ void PassRunner::tune(GlState& state, SentRays& rays, const PassCost& pass) {
     const size_t some = std::clamp<size_t>(size_t(limits.trial_seconds * rate),
                                            std::min<size_t>(32768, rays.size()), rays.size());
     rays.unpart();
+    if (are_under_way())
+        glFinish(); // no trial is to meet another pass
     const RayKind kind = tracer_->ray_kind();
     TracerTrials trials(*tracer_, rays.first(some), log_);
     state.tuning->after_pass(kind, pass, limits, trials);
 }
 
-Result<size_t> PassRunner::pass(Batch& batch, std::span<const uint32_t> wanted,
-                                const std::function<void()>& meanwhile) {
-    const size_t count = batch.rays.size();
-    assert(tracer_ && count > 0 && count <= plan_.batch_rays);
-    assert(batch.sent.size() == count && batch.answers.size() >= count);
+struct PassRunner::Work {
     Result<Done> done = Done{};
     bool alive = false;
     Moved moved;
-    double seconds = 0, kernel_seconds = 0;
-    const auto work = [&](GlState& state) {
-        const Stopwatch watch;
-        alive = is_ours(state);
-        if (!alive)
-            return;
+    Batch* answered = nullptr;
+    double seconds = 0;
+    double kernel_seconds = 0;
+};
+
+void PassRunner::work(GlState& state, Batch& batch, std::span<const uint32_t> wanted, Work& step) {
+    const Stopwatch watch;
+    step.alive = is_ours(state);
+    if (!step.alive)
+        return;
+    const bool sends = !batch.rays.empty();
+    if (sends) {
         tracer_->use(variants(state));
-        done = tracer_->submit(batch.sent);
-        if (done)
-            moved = move_in(wanted);
-        if (done)
-            done = tracer_->collect(std::span(batch.answers).first(count));
-        alive = state.context.alive(); // a dead context leaves anything in the answers
-        seconds = watch.seconds();
-        kernel_seconds = tracer_->kernel_seconds();
-        if (alive && done && measures())
-            tune(state, batch.sent, {count, kernel_seconds, seconds});
-    };
-    gl_.run_beside(work, meanwhile, [this] { tracing_.watch.keeps_on(); });
-    if (!alive)
-        return lost();
-    if (!done)
-        return done.error();
+        const Result<Tracer::Pass> pass = tracer_->submit(batch.sent);
+        if (pass)
+            under_way_.push_back({&batch, *pass});
+        else
+            step.done = pass.error();
+    }
+    if (step.done)
+        step.moved = move_in(wanted);
+    const bool waits = !sends || under_way_.size() >= passes_in_flight();
+    if (step.done && waits && !under_way_.empty()) {
+        const auto [first, pass] = under_way_.front();
+        under_way_.pop_front();
+        step.answered = first;
+        step.done = tracer_->collect(pass, std::span(first->answers).first(first->rays.size()));
+        step.kernel_seconds = tracer_->kernel_seconds();
+    }
+    step.alive = state.context.alive(); // a dead context leaves anything in the answers
+    step.seconds = watch.seconds();
+    if (step.alive && step.done && step.answered && measures())
+        tune(state, step.answered->sent,
+             {step.answered->rays.size(), step.kernel_seconds, step.seconds});
+}
+
+Result<PassRunner::Step> PassRunner::pass(Batch& batch, std::span<const uint32_t> wanted,
+                                          const std::function<void()>& meanwhile) {
+    const size_t count = batch.rays.size();
+    assert(tracer_ && count <= plan_.batch_rays);
+    assert(count == 0 || (batch.sent.size() == count && batch.answers.size() >= count));
+    Work step;
+    gl_.run_beside([&](GlState& state) { work(state, batch, wanted, step); }, meanwhile,
+                   [this] { tracing_.watch.keeps_on(); });
+    if (!step.alive || !step.done) {
+        forget_passes();
+        return step.alive ? step.done.error() : lost();
+    }
     ovc_statistics& statistics = tracing_.statistics;
-    statistics.passes += 1;
+    statistics.passes += count > 0;
     statistics.ray_visits += count;
-    statistics.seconds_pass += seconds;
-    seconds_a_ray_ = seconds / double(count);
-    statistics.seconds_kernel += kernel_seconds;
-    statistics.pages_in += moved.pages;
-    statistics.bytes_in += moved.bytes;
-    return size_t(moved.pages);
+    statistics.seconds_pass += step.seconds;
+    if (step.answered)
+        seconds_a_ray_ = step.seconds / double(step.answered->rays.size());
+    statistics.seconds_kernel += step.kernel_seconds;
+    statistics.pages_in += step.moved.pages;
+    statistics.bytes_in += step.moved.bytes;
+    return Step{size_t(step.moved.pages), step.answered};
+}
+
+void PassRunner::forget_passes() {
+    under_way_.clear();
+    if (tracer_)
+        tracer_->forget_passes();
 }
 
 std::vector<uint32_t> PassRunner::take_active() {

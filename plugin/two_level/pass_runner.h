@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <span>
@@ -24,6 +25,7 @@ namespace ovc {
 struct Batch {
     std::vector<uint32_t> rays;       // their numbers in the query
     std::array<size_t, 3> of_waves{}; // the rays of each wave, which lie together
+    size_t begun = 0;                 // rays of the query that have begun with these or before
     SentRays sent;                    // the same rays
     std::vector<Answer> answers;      // at least one per ray
 
@@ -64,11 +66,21 @@ public:
 
     /// How a pass wants its rays, within this use of the device.
     RayForm form() const { return tracer_->form(); }
-    /// Traces the rays of the batch (not empty, at most plan().batch_rays) in one pass; their
-    /// answers go into the batch. Beside the pass, pages of `wanted` move in, and meanwhile() runs
-    /// on this thread. Returns how many pages were moved. Error: the context is lost, or GL's.
-    Result<size_t> pass(Batch& batch, std::span<const uint32_t> wanted,
-                        const std::function<void()>& meanwhile);
+    /// What a step of pass() has done.
+    struct Step {
+        size_t moved = 0;          // pages
+        Batch* answered = nullptr; // the batch that has its answers now, if any
+    };
+    /// Sends the batch (at most plan().batch_rays) off in a pass, if it has any rays. Then waits
+    /// for the pass that was sent first, unless there may be more under way, so that a device with
+    /// several works on the next one meanwhile. Batches are answered in the order in which they
+    /// were sent. Beside all that, pages of `wanted` move in behind the pass, and meanwhile() runs
+    /// on this thread. Error: the context is lost, or GL's; then no pass is under way.
+    Result<Step> pass(Batch& batch, std::span<const uint32_t> wanted,
+                      const std::function<void()>& meanwhile);
+    bool are_under_way() const { return !under_way_.empty(); }
+    /// Ends all passes that are under way: those of a call that ended early.
+    void forget_passes();
 
     /// Opens a new context for the calls to come, and returns the error for the call under way.
     Error lost();
@@ -76,16 +88,20 @@ public:
     /// Returns for each leaf whether rays were traced through its page since the last call of this.
     std::vector<uint32_t> take_active();
 
+    /// How many passes may be under way together. Their answers come so many steps later.
+    size_t passes_in_flight() const { return plan_.passes; }
     /// Whether pages are to move in beside a pass.
-    bool moves_beside() const { return tracing_.options.beside.value_or(!gl_.info().is_software); }
+    bool moves_beside() const {
+        return tracing_.options.beside.value_or(gl_.info().passes_in_flight > 1);
+    }
     /// Fewer rays are not worth a pass while others wait.
     size_t few_rays() const { return std::min<size_t>(4096, plan_.batch_rays / 4); }
     /// Returns how many of `rays` a pass takes, so that it keeps the device busy and leaves
     /// something to do beside it. At most plan().batch_rays.
     size_t part_rays(size_t rays) const;
-    /// Two batches, kept between calls, take turns: one is with the kernel, while the answers of
-    /// the other are resolved and it is filled again.
-    std::array<Batch, 2>& batches() { return batches_; }
+    /// Returns the batch of step `step` of a call. Batches take turns and are kept between calls:
+    /// while some are with the kernel, the answers of another are resolved and it is filled again.
+    Batch& batch(size_t step) { return batches_[step % (passes_in_flight() + 1)]; }
 
     const MemoryPlan& plan() const { return plan_; }
     /// The bytes of GL buffers and textures that are alive. At any time.
@@ -103,6 +119,9 @@ private:
     bool takes_measured() const;
     bool measures() const;
     ChosenVariants variants(GlState& state) const;
+    /// A step on the context's thread.
+    struct Work;
+    void work(GlState& state, Batch& batch, std::span<const uint32_t> wanted, Work& step);
     void tune(GlState& state, SentRays& rays, const PassCost& pass);
     /// Whether the tracer's context is alive. Called on the context's thread.
     bool is_ours(const GlState& state) const {
@@ -118,9 +137,14 @@ private:
     std::unique_ptr<Tracer> tracer_; // made and destroyed on the thread of gl_
     std::atomic<uint64_t> gpu_bytes_{0};
     uint32_t tracer_generation_ = 0; // of the context that it was made in
-    std::array<Batch, 2> batches_;
-    double seconds_a_ray_ = 1e-5; // of the pass before
-    SharedBudget::Share share_;   // closes the tracer
+    std::array<Batch, 3> batches_;
+    struct UnderWay {
+        Batch* batch;
+        Tracer::Pass pass;
+    };
+    std::deque<UnderWay> under_way_; // the pass that was sent first comes first
+    double seconds_a_ray_ = 1e-5;    // of the pass before
+    SharedBudget::Share share_;      // closes the tracer
 };
 
 } // namespace ovc

@@ -1,19 +1,52 @@
 // SPDX-License-Identifier: Apache-2.0
 // WaveRound: runs passes over the rays that are ready in one wave, or in two that share the passes.
-// As in OnePass, the rays are parted: beside the pass of one part, the part before is resolved and
-// the next one is made ready.
+// As in OnePass, the rays are parted: beside the passes of some parts, the part before them is
+// resolved and the next one is made ready.
 #pragma once
 
 #include "plugin/two_level/wave.h"
 
 #include <algorithm>
 #include <cassert>
+#include <deque>
 #include <numeric>
 #include <tuple>
 #include <utility>
 #include <vector>
 
 namespace ovc {
+
+/// The pages that were moved beside passes. The rays of these passes may come to wait for them, so
+/// they are called up until those rays are resolved.
+class MovedBeside {
+public:
+    /// passes: how many steps later than it is sent a batch is resolved.
+    explicit MovedBeside(size_t passes) : passes_(passes) {}
+
+    /// Takes the pages that the step has moved, and calls up(pages) for each step whose rays were
+    /// not resolved before this one.
+    template <class CallUp>
+    void call_up_after_step(std::vector<uint32_t> moved, CallUp&& up) {
+        steps_.push_back(std::move(moved));
+        drop_before(passes_ + 1);
+        std::ranges::for_each(steps_, up);
+    }
+    /// The same once the last batch is resolved.
+    template <class CallUp>
+    void call_up_last(CallUp&& up) {
+        drop_before(passes_);
+        std::ranges::for_each(steps_, up);
+    }
+
+private:
+    void drop_before(size_t steps) {
+        while (steps_.size() > steps)
+            steps_.pop_front();
+    }
+
+    size_t passes_;
+    std::deque<std::vector<uint32_t>> steps_;
+};
 
 template <class... Queries>
 class WaveRound {
@@ -40,42 +73,47 @@ public:
             return fine;
         if (ready() == 0)
             return passes_.lost(); // nothing could be moved in
-        Batch* now = &passes_.batches()[0];
-        Batch* other = &passes_.batches()[1];
-        load(*other, 0);
-        load(*now, std::min(passes_.part_rays(ready()), max_rays));
-        std::vector<uint32_t> beside; // pages moved in beside the pass: its rays may wait for them
+        passes_.forget_passes();
+        load(passes_.batch(0), std::min(passes_.part_rays(ready()), max_rays));
+        Batch* answered = nullptr;
+        MovedBeside beside(passes_.passes_in_flight());
         bool goes_on = true;
-        while (!now->rays.empty()) {
-            assert(now->rays.size() <= max_rays);
-            max_rays -= now->rays.size();
+        for (size_t step = 0; is_left(step); ++step) {
+            assert(passes_.batch(step).rays.size() <= max_rays);
+            max_rays -= passes_.batch(step).rays.size();
             std::vector<uint32_t> wanted_beside;
             if (passes_.moves_beside())
                 wanted_beside = wanted();
-            const Result<size_t> moved = passes_.pass(*now, wanted_beside, [&] {
-                resolve(*other);
-                if (tracing_.scene.store)
-                    passes_.read_ahead(worth_moving());
-                goes_on = meanwhile() && goes_on;
-                const bool enough = ready() >= passes_.few_rays();
-                load(*other,
-                     goes_on && enough ? std::min(passes_.part_rays(ready()), max_rays) : 0);
-            });
-            if (!moved)
-                return moved.error();
-            assert(*moved <= wanted_beside.size());
-            wanted_beside.resize(*moved);
-            call_up(beside);
-            call_up(wanted_beside);
-            beside = std::move(wanted_beside);
-            std::swap(now, other);
+            const Result<PassRunner::Step> done =
+                passes_.pass(passes_.batch(step), wanted_beside, [&] {
+                    if (answered)
+                        resolve(*answered);
+                    if (tracing_.scene.store)
+                        passes_.read_ahead(worth_moving());
+                    goes_on = meanwhile() && goes_on;
+                    const bool enough = ready() >= passes_.few_rays();
+                    load(passes_.batch(step + 1),
+                         goes_on && enough ? std::min(passes_.part_rays(ready()), max_rays) : 0);
+                });
+            if (!done)
+                return done.error();
+            answered = done->answered;
+            assert(done->moved <= wanted_beside.size());
+            wanted_beside.resize(done->moved);
+            beside.call_up_after_step(std::move(wanted_beside),
+                                      [&](auto& moved) { call_up(moved); });
         }
-        resolve(*other);
-        call_up(beside);
+        if (answered)
+            resolve(*answered);
+        beside.call_up_last([&](auto& moved) { call_up(moved); });
         return tracing_.watch.unless_cancelled();
     }
 
 private:
+    bool is_left(size_t step) {
+        return !passes_.batch(step).rays.empty() || passes_.are_under_way();
+    }
+
     template <class Body>
     void each(Body&& body) {
         std::apply([&](auto&... wave) { (body(wave), ...); }, waves_);
