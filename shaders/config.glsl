@@ -16,6 +16,10 @@
 #ifndef OVC_PORTALS
 #define OVC_PORTALS 0
 #endif
+// 1: portals compute rays in pairs of floats, for devices on which doubles are slow; 0: in doubles.
+#ifndef OVC_FLOAT_PAIRS
+#define OVC_FLOAT_PAIRS 0
+#endif
 #ifndef OVC_FAR_TRIANGLES
 #define OVC_FAR_TRIANGLES 0 // 1: some portals lead to far triangles
 #endif

@@ -146,6 +146,9 @@
 #define OVC_DEALT_GROUPS 4
 #define OVC_DEALT_SLICES 16
 
+// Invocations in a work group of the kernel that gpu/tuning/float_pair_check.h runs.
+#define OVC_CHECKED_PAIRS 64
+
 // The error bound, in units of u = 2^-24 (docs/design/numerics.md): a projected corner p is off by
 // at most u (OVC_BOUND_CONSTANT + OVC_BOUND_RELATIVE (|x| + |y| + |z|)).
 #define OVC_BOUND_UNIT 5.9604644775390625e-8

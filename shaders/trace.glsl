@@ -26,6 +26,9 @@ bool take_rays(int ray, Tree tree, out Packet packet, out Found found[OVC_PACKET
     packet.place.grid = packet.grid[0];
     packet.place.backward = packet.backward;
     packet.place.end = found[0].best_hi;
+#if OVC_FLOAT_PAIRS
+    packet.place.early = local.early;
+#endif
     measure(packet.place);
     return local.meets && local.decidable;
 }
@@ -67,7 +70,9 @@ const float OVC_ANYWHERE = -3.0e38; // a t before all others
 
 // Returns a t before which the ray certainly hits nothing, in the frame of the top-level tree.
 float begin_of(Found found, Place place) {
-#if OVC_PORTALS
+#if OVC_FLOAT_PAIRS
+    return earlier(first_t(found), place.part, place.scene) - place.early;
+#elif OVC_PORTALS
     return earlier(first_t(found), place.part, place.scene);
 #else
     return first_t(found);

@@ -25,7 +25,8 @@ struct ShaderConfig {
     bool any_hit = false;
     bool certify = true;
     bool portals = false;
-    bool far_triangles = false; // behind portals
+    bool float_pairs = false;   // portals compute rays in pairs of floats
+    bool far_triangles = false; // behind portals; not with float_pairs
     bool may_wait = false;
     bool tell_active = false;
     bool loose_pairs = false;

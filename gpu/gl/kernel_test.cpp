@@ -23,11 +23,13 @@ TEST(ShaderSource, IncludesAreReplacedAndDefinesFollowTheVersion) {
     EXPECT_THAT(*source, HasSubstr("void trace_once("));
     EXPECT_LT(source->find("#version"), source->find("#define OVC_ANY_HIT 1"));
     EXPECT_LT(source->find("#define OVC_ANY_HIT 1"), source->find("#ifndef OVC_ANY_HIT"));
-    EXPECT_THAT(files, testing::ElementsAre("trace.frag.glsl", "layout.h", "config.glsl",
-                                            "page.glsl", "unit.glsl", "box.glsl", "children.glsl",
-                                            "triangle.glsl", "times.glsl", "occluder.glsl",
-                                            "found.glsl", "pair.glsl", "traverse.glsl", "ray.glsl",
-                                            "portals.glsl", "far.glsl", "trace.glsl"));
+    EXPECT_THAT(files,
+                testing::ElementsAre(
+                    "trace.frag.glsl", "layout.h", "config.glsl", "page.glsl", "unit.glsl",
+                    "box.glsl", "children.glsl", "triangle.glsl", "times.glsl", "float_pairs.glsl",
+                    "times_float_pairs.glsl", "times_doubles.glsl", "occluder.glsl", "found.glsl",
+                    "pair.glsl", "traverse.glsl", "ray.glsl", "portals.glsl", "local_ray.glsl",
+                    "rebase_float_pairs.glsl", "rebase_doubles.glsl", "far.glsl", "trace.glsl"));
 }
 
 TEST(ShaderSource, AMissingFileIsNamed) {

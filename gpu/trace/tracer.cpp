@@ -7,6 +7,7 @@
 #include "core/system/stopwatch.h"
 #include "core/text/format_text.h"
 #include "gpu/gl/gl_check.h"
+#include "gpu/tuning/float_pair_check.h"
 #include "shaders/layout.h"
 
 #include <algorithm>
@@ -252,7 +253,18 @@ bool Tracer::can_run(const KernelVariant& variant) const {
     uint64_t largest = slots_[0].ray_buffer.bytes();
     for (uint32_t i = 0; i < layout.count(); ++i)
         largest = std::max(largest, layout.bytes_of(i));
-    return can_read(device_, variant, layout.count(), largest);
+    return can_read(device_, variant, layout.count(), largest) &&
+           (!variant.float_pairs || takes_float_pairs());
+}
+
+/// Whether kernels can change frames in pairs of floats. Far triangles need the doubles, and so do
+/// rays that wait: their resume keys must be the same bits in every pass.
+bool Tracer::takes_float_pairs() const {
+    if (!has_portals() || !options_.certify || may_wait() || !top_.far_triangles.empty())
+        return false;
+    if (!keeps_float_pairs_)
+        keeps_float_pairs_ = driver_keeps_float_pairs();
+    return *keeps_float_pairs_;
 }
 
 void Tracer::begin_to_compile(const KernelVariant& variant) {
@@ -297,6 +309,7 @@ ShaderConfig Tracer::shader_config(RayKind kind, const KernelVariant& variant) c
     config.certify = options_.certify;
     config.counts = options_.counts;
     config.portals = has_portals();
+    config.float_pairs = variant.float_pairs && takes_float_pairs();
     config.far_triangles = !top_.far_triangles.empty();
     config.may_wait = may_wait();
     config.tell_active = active_buffer_.has_value();

@@ -125,7 +125,7 @@ public:
     /// The kind of the rays whose answers were collected last.
     RayKind ray_kind() const { return kind_; }
 
-    /// Whether the pool's buffers suit the variant.
+    /// Whether the device and the scene suit the variant.
     bool can_run(const KernelVariant& variant) const;
     /// Begins to compile the kernel for rays of that kind as another variant; is_ready() tells
     /// whether that is over.
@@ -160,6 +160,7 @@ private:
     /// Whether rays of the pass may have to wait for a page.
     bool may_wait() const { return !all_fit_; }
     static void come_back(const SentRays& rays, std::span<Answer> answers);
+    bool takes_float_pairs() const;
     ShaderConfig shader_config(RayKind kind, const KernelVariant& variant) const;
     static bool packs(RayKind kind, const KernelVariant& variant) {
         return variant.packets && kind.coherent && !kind.portals;
@@ -179,9 +180,10 @@ private:
     PassOptions options_;
     std::span<const Page> page_data_;
     const DeviceInfo device_;
-    RayKind kind_;               // of the pass that was collected last
-    bool long_stacks_ = false;   // eight words were too few
-    bool never_refills_ = false; // rays need all rounds that there are
+    RayKind kind_;                                  // of the pass that was collected last
+    bool long_stacks_ = false;                      // eight words were too few
+    bool never_refills_ = false;                    // rays need all rounds that there are
+    mutable std::optional<bool> keeps_float_pairs_; // the driver; asked when somebody wants to know
     const bool counts_rounds_ = needs(Workaround::CountedRounds);
     const bool registers_lose_words_ = needs(Workaround::ShortRegisterStack);
     const TopLevel& top_;

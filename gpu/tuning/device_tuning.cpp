@@ -108,8 +108,10 @@ void DeviceTuning::after_pass(RayKind kind, const PassCost& pass, const TuningLi
 void DeviceTuning::begin(RayKind kind, Search& search, VariantTrials& trials) {
     search.begun = true;
     const KernelVariant& base = defaults_[kind];
-    const auto differs = [&](const KernelVariant& v) { // where packets mean nothing, it does not
-        return (kind.coherent && !kind.portals) || !v.compute || v.packets == base.packets;
+    const auto differs = [&](const KernelVariant& v) { // where a switch means nothing, it does not
+        const bool packs = (kind.coherent && !kind.portals) || !v.compute;
+        return (packs || v.packets == base.packets) &&
+               (kind.portals || v.float_pairs == base.float_pairs);
     };
     for (const KernelVariant& variant : neighbours(base, device_, /* other_kernel= */ true))
         if (differs(variant) && trials.can_run(variant))

@@ -41,6 +41,8 @@ bool take_word(std::string_view word, KernelVariant& variant) {
         variant.branches = word == "branches";
     else if (word == "array")
         variant.register_words = 0;
+    else if (word == "float-pairs")
+        variant.float_pairs = true;
     else if (!take_number(word, "group", variant.group_size))
         return take_number(word, "registers", variant.register_words) &&
                variant.register_words > 0 && variant.register_words <= 64;
@@ -61,6 +63,7 @@ std::string KernelVariant::text() const {
     text += deal_groups ? ",deal" : "";
     text += branches ? ",branches" : ",both-sides";
     text += register_words ? format_text(",registers={}", register_words) : ",array";
+    text += float_pairs ? ",float-pairs" : "";
     return text + "," + std::string(kReads[size_t(reads)]);
 }
 
@@ -69,10 +72,12 @@ Result<KernelVariant> parse_variant(std::string_view text) {
     for (std::string_view rest = text;;) {
         const size_t comma = std::min(rest.find(','), rest.size());
         if (!take_word(rest.substr(0, comma), variant))
-            return Error{format_text("'{}' is no switch of a kernel, in '{}'; there are compute, "
-                                     "fragment, group=N, packets, refill, deal, branches, "
-                                     "both-sides, registers=N, array, textures, images, storage",
-                                     rest.substr(0, comma), text)};
+            return Error{
+                format_text("'{}' is no switch of a kernel, in '{}'; there are compute, "
+                            "fragment, group=N, packets, refill, deal, branches, "
+                            "both-sides, registers=N, array, float-pairs, textures, images, "
+                            "storage",
+                            rest.substr(0, comma), text)};
         if (comma == rest.size())
             break;
         rest.remove_prefix(comma + 1);
@@ -110,6 +115,7 @@ std::vector<KernelVariant> neighbours(const KernelVariant& from, const DeviceInf
             found.push_back(variant);
     };
     add([](KernelVariant& v) { v.refill = !v.refill; });
+    add([](KernelVariant& v) { v.float_pairs = !v.float_pairs; });
     for (const TexelReads reads :
          {TexelReads::StorageBuffers, TexelReads::Images, TexelReads::Textures})
         add([&](KernelVariant& v) { v.reads = reads; });
@@ -141,6 +147,7 @@ KernelVariant with_changes(KernelVariant base, const KernelVariant& from,
     take(&KernelVariant::deal_groups);
     take(&KernelVariant::branches);
     take(&KernelVariant::register_words);
+    take(&KernelVariant::float_pairs);
     take(&KernelVariant::reads);
     return base;
 }

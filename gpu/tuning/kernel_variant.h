@@ -19,7 +19,8 @@ namespace ovc {
 /// Certified answers are the same bits whichever variant a kernel is. Those that a device cannot
 /// run, and switches that mean nothing together, are left out by candidates().
 struct KernelVariant {
-    bool compute = true;         // false: the fragment kernel, which lacks the next four
+    bool compute = true;         // false: the fragment kernel, which lacks some of the others
+    bool float_pairs = false;    // frames are changed in pairs of floats; else in doubles
     uint32_t group_size = 64;    // invocations
     bool packets = false;        // rays that go alike are taken two at a time
     bool refill = false;         // a lane takes the next ray when its own is done

@@ -7,12 +7,12 @@
 namespace ovc {
 namespace {
 
-constexpr uint32_t kSwitches = 19;
+constexpr uint32_t kSwitches = 20;
 
 /// Returns the kernel whose switches have the values of these bits, or nothing where no kernel may
 /// have them together: packets and refill are the compute kernel's, packets go through no portals,
-/// far triangles lie behind some, and long stacks are arrays where a driver loses words of those in
-/// registers. Storage buffers are no images.
+/// far triangles lie behind some and need doubles, and long stacks are arrays where a driver loses
+/// words of those in registers. Storage buffers are no images.
 std::optional<ShaderConfig> kernel_of(uint32_t bits) {
     const auto take = [&] { return std::exchange(bits, bits >> 1) & 1; };
     ShaderConfig config;
@@ -37,11 +37,14 @@ std::optional<ShaderConfig> kernel_of(uint32_t bits) {
                             : TexelReads::Textures;
     config.group_size = take() ? 128 : 64;
     config.max_rounds = take() ? kMaxCountedRounds : 0x7fffffff;
+    config.float_pairs = take();
     if (!config.compute && (config.packet > 1 || config.refill || config.deal_groups))
         return std::nullopt;
     if ((images && storage) || (!config.compute && config.group_size != 64))
         return std::nullopt;
-    if (config.portals ? config.packet > 1 : config.far_triangles)
+    if (config.portals ? config.packet > 1 : config.far_triangles || config.float_pairs)
+        return std::nullopt;
+    if (config.float_pairs && (config.far_triangles || config.may_wait || !config.certify))
         return std::nullopt;
     if (config.stack_registers && config.stack_depth > 32)
         return std::nullopt;
@@ -69,7 +72,7 @@ std::vector<ShaderConfig> kernel_variants() {
     for (;;) {
         uint32_t best = 0, best_count = 0;
         // An odd multiplier visits all values in a scattered order, so that ties fall far apart.
-        for (uint32_t i = 0; i < 1u << kSwitches; i += 7) {
+        for (uint32_t i = 0; i < 1u << kSwitches; i += 13) {
             const uint32_t bits = i * 40503u & ((1u << kSwitches) - 1);
             if (!kernel_of(bits))
                 continue;

@@ -91,6 +91,7 @@ Result<SharedBudget::Use> PassRunner::begin_use(BuildProgress* progress) {
 
 /// Makes the tracer, with a smaller pool where the driver has no room for the plan's.
 Result<Done> PassRunner::open(BuildProgress* progress) {
+    bool suits = true; // the variant that was given
     while (true) {
         Result<std::unique_ptr<Tracer>> made = Error{};
         gl_.run([&](GlState& state) {
@@ -102,6 +103,8 @@ Result<Done> PassRunner::open(BuildProgress* progress) {
                                       tracing_.scene.pages, tracing_.scene.top);
             else
                 made = Error{"the GPU's context is lost", ErrorKind::DeviceLost};
+            suits = !made || tracing_.options.variant != VariantChoice::Given ||
+                    (*made)->can_run(tracing_.options.given_variant);
         });
         if (made) {
             tracer_ = std::move(*made);
@@ -124,6 +127,9 @@ Result<Done> PassRunner::open(BuildProgress* progress) {
                         plan_.pool_bytes, smaller));
         plan_.pool_bytes = smaller;
     }
+    if (!suits && tracing_.options.given_variant.float_pairs)
+        say(log_, LogLevel::Warning,
+            "frames are changed in doubles: the device or the scene does not suit float-pairs");
     bring_first(progress);
     gpu_bytes_ = tracer_->ledger().in_use;
     tracing_.statistics.gpu_peak_bytes =

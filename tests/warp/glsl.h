@@ -7,6 +7,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib> // abs(int)
 
 namespace glsl {
 
@@ -147,6 +148,12 @@ inline ivec4 min(ivec4 a, ivec4 b) {
 }
 inline ivec4 max(ivec4 a, ivec4 b) {
     return each<int>([](int x, int y) { return std::max(x, y); }, a, b);
+}
+inline float min(float a, float b) {
+    return std::min(a, b);
+}
+inline float max(float a, float b) {
+    return std::max(a, b);
 }
 inline float abs(float f) {
     return std::fabs(f);

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Writes the kernel's sources as C++, for replayed_kernel.cpp. usage: glsl_as_cpp.py SHADERS OUT
+"""Writes sources of the kernel as C++. usage: glsl_as_cpp.py SHADERS OUT [rebase]
 
 Only the spelling changes: parameters that go out become references, arrays become values, swizzles
 calls, and numbers with a point floats. What the kernel reads and writes is left to the C++ that
-includes this, in the places where BEFORE says so.
+includes this. Without `rebase` that is all that replayed_kernel.cpp runs; with it, what
+rebased.cpp runs: how rays change frames in pairs of floats.
 """
 import pathlib
 import re
@@ -13,12 +14,17 @@ import sys
 FILES = ("config.glsl", "unit.glsl", "@reads", "box.glsl", "children.glsl",
          "triangle.glsl", "times.glsl", "found.glsl", "occluder.glsl", "pair.glsl",
          "traverse.glsl", "trace.glsl")
+REBASE_FILES = ("float_pairs.glsl", "times_float_pairs.glsl", "@rays", "local_ray.glsl",
+                "rebase_float_pairs.glsl")
+READS = {"@reads": "Unit unit_at(int unit);\nuvec4 ray_texel(int texel);\n",
+         "@rays": "uvec4 ray_texel(int texel);\nuvec4 portal_texel(int texel);\n"}
 OCCLUDES = "OVC_ANY_HIT && OVC_CERTIFY"
 
 
 def as_cpp(text):
     text = re.sub(r"//[^\n]*", "", text)
     text = re.sub(r"\bprecise ", "", text)
+    text = re.sub(r'^#include "\w+\.glsl"$', "", text, flags=re.MULTILINE)
     text = re.sub(r"\b(?:inout|out) (\w+) (\w+)\[(\w+)\]", r"Array<\1, \3>& \2", text)
     text = re.sub(r"\b(?:inout|out) (\w+) (\w+)", r"\1& \2", text)
     text = re.sub(r"\b(\w+)\[(\w+)\]\(", r"Array<\1, \2>(", text)
@@ -35,9 +41,9 @@ def as_cpp(text):
 def main():
     shaders, out = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
     parts = []
-    for name in FILES:
-        if name == "@reads":
-            parts.append("Unit unit_at(int unit);\nuvec4 ray_texel(int texel);\n")
+    for name in REBASE_FILES if "rebase" in sys.argv[3:] else FILES:
+        if name in READS:
+            parts.append(READS[name])
             continue
         text = as_cpp((shaders / name).read_text())
         if name == "found.glsl":
