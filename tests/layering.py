@@ -31,6 +31,7 @@ PARTS = {
     "gpu/bvh": set(),
     "gpu/frame": set(),
     "gpu/page": {"gpu/bvh", "gpu/frame"},
+    "gpu/late": {"gpu/gl", "gpu/trace"},
     "gpu/tuning": {"gpu/gl"},
     "gpu/trace": {"gpu/budget", "gpu/driver", "gpu/frame", "gpu/gl", "gpu/page", "gpu/tuning"},
     "plugin/structure": {"plugin"},

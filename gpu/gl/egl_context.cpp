@@ -179,6 +179,7 @@ DeviceInfo describe() {
     info.is_tested = name.starts_with("llvmpipe");
     info.has_ballots = epoxy_has_gl_extension("GL_ARB_shader_ballot") &&
                        epoxy_has_gl_extension("GL_ARB_gpu_shader_int64");
+    info.passes_in_flight = needs(Workaround::FinishedPass) ? 1 : 2;
     info.takes_host_pages = info.is_software && epoxy_has_gl_extension("GL_AMD_pinned_memory");
     GLint value = 0;
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &value);

@@ -30,6 +30,9 @@ struct DeviceInfo {
     uint32_t max_pool_buffers = 1; // that a kernel can read beside its other inputs
     /// The same by TexelReads; what a variant may try.
     std::array<uint32_t, 3> pool_buffers_by_reads{1, 1, 1};
+    /// How many passes of a kernel may be under way together: 1 where each must be over before
+    /// anything else is sent (Workaround::FinishedPass), so that its answers wait for nothing.
+    uint32_t passes_in_flight = 1;
     uint64_t max_storage_bytes = 0;   // of one storage buffer
     uint64_t buffer_alignment = 16;   // bytes, of windows into a buffer
     uint64_t memory_bytes = 0;        // free, as reported; on a software renderer 1 GiB

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cstring>
 
 namespace ovc {
 namespace {
@@ -22,19 +23,40 @@ size_t pixel_of(size_t ray) {
     return y * OVC_ROW_RAYS + x;
 }
 
+/// Returns memory for the answers of so many rays, or nothing where it is not wanted or not given.
+std::optional<ReadBack> read_back_for(uint32_t rays, bool wanted) {
+    std::optional<ReadBack> made;
+    if (wanted)
+        made.emplace(rays * kAnswerBytes);
+    return made && made->is_there() ? std::move(made) : std::nullopt;
+}
+
 } // namespace
 
-AnswerPixels::AnswerPixels(Ledger& ledger, uint32_t rays)
+AnswerPixels::AnswerPixels(Ledger& ledger, uint32_t rays, bool copied_behind)
     : texture_(ledger, GL_RGBA32UI, kAnswerBytes, OVC_ROW_RAYS, rays / OVC_ROW_RAYS, "answers"),
-      framebuffer_(texture_) {}
+      framebuffer_(texture_),
+      read_back_(read_back_for(rays, copied_behind)) {}
 
-void AnswerPixels::draw(size_t rays) const {
+void AnswerPixels::draw(size_t rays) {
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
     glBindVertexArray(vertex_array_.id());
     glViewport(0, 0, OVC_ROW_RAYS, GLsizei(whole_blocks(rays) / OVC_ROW_RAYS));
     glDisable(GL_DEPTH_TEST);
     glDisable(GL_BLEND);
     glDrawArrays(GL_TRIANGLES, 0, 3);
+    if (!read_back_)
+        return;
+    glBindBuffer(GL_PIXEL_PACK_BUFFER, read_back_->id());
+    read_pixels(whole_blocks(rays) / OVC_ROW_RAYS, nullptr);
+    glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
+    read_back_->end_copies();
+}
+
+/// to: memory, or an offset into the buffer that is bound for pixels.
+void AnswerPixels::read_pixels(size_t rows, void* to) const {
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
+    glReadPixels(0, 0, OVC_ROW_RAYS, GLsizei(rows), GL_RGBA_INTEGER, GL_UNSIGNED_INT, to);
 }
 
 /// Makes room, and clears none of it.
@@ -43,16 +65,20 @@ static void grow(std::vector<uint32_t>& plane, size_t size) {
 }
 
 void AnswerPixels::read(Answers& answers, size_t rays) {
-    pixels_.resize(whole_blocks(rays));
-    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
-    glReadPixels(0, 0, OVC_ROW_RAYS, GLsizei(pixels_.size() / OVC_ROW_RAYS), GL_RGBA_INTEGER,
-                 GL_UNSIGNED_INT, pixels_.data());
+    const uvec4* pixels = nullptr;
+    if (read_back_) {
+        pixels = reinterpret_cast<const uvec4*>(read_back_->bytes().data());
+    } else {
+        pixels_.resize(whole_blocks(rays));
+        read_pixels(pixels_.size() / OVC_ROW_RAYS, pixels_.data());
+        pixels = pixels_.data();
+    }
     grow(answers.names, rays);
     for (std::vector<uint32_t>& plane : answers.more)
         grow(plane, rays);
     parallel_for(rays, kAnswerGrain, [&](size_t first, size_t last) {
         for (size_t ray = first; ray < last; ++ray) {
-            const uvec4& p = pixels_[pixel_of(ray)];
+            const uvec4& p = pixels[pixel_of(ray)];
             answers.names[ray] = p.w | OVC_SAYS_MORE;
             for (int k = 0; k < 3; ++k)
                 answers.more[size_t(k)][ray] = p[k];
@@ -60,8 +86,10 @@ void AnswerPixels::read(Answers& answers, size_t rays) {
     });
 }
 
-AnswerWords::AnswerWords(Ledger& ledger, uint32_t rays)
-    : rays_(rays), buffer_(ledger, uint64_t(rays) * kAnswerBytes, "answers") {
+AnswerWords::AnswerWords(Ledger& ledger, uint32_t rays, bool copied_behind)
+    : rays_(rays),
+      buffer_(ledger, uint64_t(rays) * kAnswerBytes, "answers"),
+      read_back_(read_back_for(rays, copied_behind)) {
     assert(rays == whole_blocks(rays));
     texture_.show(buffer_, GL_R32UI, 0, buffer_.bytes());
     // The plane stays like this while all pages are resident, because no answer names a leaf then.
@@ -70,12 +98,12 @@ AnswerWords::AnswerWords(Ledger& ledger, uint32_t rays)
 
 void AnswerWords::fill_plane(int number, size_t rays, uint32_t word) const {
     assert(number >= 0 && number < 4 && rays <= rays_);
-    glClearNamedBufferSubData(
-        buffer_.id(), GL_R32UI, GLintptr(uint64_t(number) * rays_ * sizeof(word)),
-        GLsizeiptr(rays * sizeof(word)), GL_RED_INTEGER, GL_UNSIGNED_INT, &word);
+    glClearNamedBufferSubData(buffer_.id(), GL_R32UI, GLintptr(offset_of(number)),
+                              GLsizeiptr(rays * sizeof(word)), GL_RED_INTEGER, GL_UNSIGNED_INT,
+                              &word);
 }
 
-void AnswerWords::dispatch(GLuint program, size_t rays, size_t group_rays) const {
+void AnswerWords::dispatch(GLuint program, size_t rays, size_t group_rays) {
     glProgramUniform1i(program, OVC_LOCATION_PLANE, GLint(rays_));
     glBindImageTexture(OVC_BINDING_ANSWERS, texture_.id(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32UI);
     const size_t all = whole_blocks(rays);
@@ -83,16 +111,26 @@ void AnswerWords::dispatch(GLuint program, size_t rays, size_t group_rays) const
     glProgramUniform1i(program, OVC_LOCATION_RAYS, GLint(all));
     glDispatchCompute(GLuint((all + group_rays - 1) / group_rays), 1, 1);
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    if (!read_back_)
+        return;
+    for (int number = 0; number < 4; ++number)
+        glCopyNamedBufferSubData(buffer_.id(), read_back_->id(), GLintptr(offset_of(number)),
+                                 GLintptr(offset_of(number)), GLsizeiptr(all * sizeof(uint32_t)));
+    read_back_->end_copies();
 }
 
-void AnswerWords::read_plane(int number, size_t slots, std::vector<uint32_t>& to) const {
+void AnswerWords::read_plane(int number, size_t slots, std::vector<uint32_t>& to) {
     assert(number >= 0 && number < 4 && slots <= rays_);
     grow(to, slots);
-    glGetNamedBufferSubData(buffer_.id(), GLintptr(uint64_t(number) * rays_ * sizeof(uint32_t)),
-                            GLsizeiptr(slots * sizeof(uint32_t)), to.data());
+    const size_t bytes = slots * sizeof(uint32_t);
+    if (read_back_)
+        std::memcpy(to.data(), read_back_->bytes().data() + offset_of(number), bytes);
+    else
+        glGetNamedBufferSubData(buffer_.id(), GLintptr(offset_of(number)), GLsizeiptr(bytes),
+                                to.data());
 }
 
-void AnswerWords::read(Answers& answers, size_t slots) const {
+void AnswerWords::read(Answers& answers, size_t slots) {
     read_plane(0, slots, answers.names);
     uint32_t all = 0;
     for (size_t i = 0; i < slots; ++i)

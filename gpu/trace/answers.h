@@ -6,11 +6,13 @@
 #include "core/vec.h"
 #include "gpu/gl/gl_object.h"
 #include "gpu/trace/local_ray.h"
+#include "gpu/trace/read_back.h"
 #include "shaders/layout.h"
 
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -86,39 +88,44 @@ inline size_t whole_blocks(size_t n) {
 
 /// Answers of the fragment kernel. This class and AnswerWords have room for `rays` rays, whole
 /// blocks. draw() and dispatch() start the pass: its program is in use and its inputs are bound.
-/// read() waits for the pass.
+/// read() waits for the pass; if answers are copied behind it, it does not wait for later passes.
 class AnswerPixels {
 public:
-    AnswerPixels(Ledger& ledger, uint32_t rays);
+    AnswerPixels(Ledger& ledger, uint32_t rays, bool copied_behind);
     /// False where the driver cannot draw to such a texture.
     bool complete() const { return framebuffer_.complete(); }
-    void draw(size_t rays) const;
+    void draw(size_t rays);
     /// Reads the answers of the first rays.
     void read(Answers& answers, size_t rays);
 
 private:
+    void read_pixels(size_t rows, void* to) const;
+
     gl::Texture2D texture_;
     gl::Framebuffer framebuffer_;
     gl::VertexArray vertex_array_;
     std::vector<uvec4> pixels_;
+    std::optional<ReadBack> read_back_;
 };
 
 /// Answers of the compute kernel. It writes no misses, so dispatch() first fills them in.
 class AnswerWords {
 public:
-    AnswerWords(Ledger& ledger, uint32_t rays);
+    AnswerWords(Ledger& ledger, uint32_t rays, bool copied_behind);
     /// group_rays: rays of a work group, or the max number with ray refill.
-    void dispatch(GLuint program, size_t rays, size_t group_rays) const;
+    void dispatch(GLuint program, size_t rays, size_t group_rays);
     /// Reads the answers of the first slots.
-    void read(Answers& answers, size_t slots) const;
+    void read(Answers& answers, size_t slots);
 
 private:
+    uint64_t offset_of(int number) const { return uint64_t(number) * rays_ * sizeof(uint32_t); }
     void fill_plane(int number, size_t rays, uint32_t word) const;
-    void read_plane(int number, size_t slots, std::vector<uint32_t>& to) const;
+    void read_plane(int number, size_t slots, std::vector<uint32_t>& to);
 
     uint32_t rays_;
     gl::Buffer buffer_;
     gl::BufferTexture texture_;
+    std::optional<ReadBack> read_back_;
 };
 
 } // namespace ovc

@@ -3,22 +3,20 @@
 // fences. It is no GPU memory, and does not count for a budget.
 #pragma once
 
-#include "gpu/gl/gl.h"
-#include "gpu/gl/gl_object.h"
+#include "gpu/gl/fence.h"
+#include "gpu/gl/mapped_buffer.h"
 #include "gpu/trace/staging.h"
 
 #include <deque>
 #include <span>
-#include <vector>
 
 namespace ovc {
 
+/// Copies go to buffers by their GL names.
 class GlStaging final : public StagingDriver {
 public:
-    /// buffers: the GL names of those that copies go to, by their numbers. The context is current,
-    /// here and in all calls.
-    GlStaging(size_t bytes, std::vector<GLuint> buffers);
-    ~GlStaging() override;
+    /// The context is current, here and in all calls.
+    explicit GlStaging(size_t bytes);
     GlStaging(const GlStaging&) = delete;
 
     std::span<std::byte> memory() override { return memory_; }
@@ -27,16 +25,9 @@ public:
     void wait(uint64_t fence) override;
 
 private:
-    static GLuint create();
-
-    /// Whether the context is the one that this was made in; its fences are gone with it.
-    bool is_alive() const { return generation_ == gl::context_generation; }
-
-    const uint32_t generation_ = gl::context_generation;
-    std::vector<GLuint> buffers_;
-    gl::Handle<gl::delete_buffer> buffer_;
+    gl::MappedBuffer buffer_;
     std::span<std::byte> memory_;
-    std::deque<GLsync> fences_; // the first has the number passed_ + 1
+    std::deque<gl::Fence> fences_; // the first has the number passed_ + 1
     uint64_t passed_ = 0;
 };
 

@@ -82,8 +82,7 @@ protected:
         Answers answers;
         gl->run([&](GlState&) {
             SentRays sent = send(tracer->form(), states);
-            ASSERT_TRUE(tracer->submit(sent));
-            ASSERT_TRUE(tracer->collect(answers));
+            ASSERT_TRUE(tracer->trace(sent, answers));
         });
         for (size_t j = 0; j < some.size(); ++j) {
             UnderWay& way = rays[some[j]];

@@ -5,11 +5,9 @@
 
 #include "gpu/gl/gl_object.h"
 #include "gpu/page/residency.h"
-#include "gpu/trace/gl_staging.h"
+#include "gpu/trace/uploads.h"
 
 #include <cstdint>
-#include <memory>
-#include <utility>
 #include <vector>
 
 namespace ovc {
@@ -17,8 +15,10 @@ namespace ovc {
 /// The buffers and their Residency. All calls need the context current.
 class Pool {
 public:
-    /// Pages lie behind the first `begin` bytes, which the top-level tree takes.
-    Pool(Ledger& ledger, const PoolLayout& layout, size_t leaves, uint64_t begin = 0);
+    /// Pages lie behind the first `begin` bytes, which the top-level tree takes. The ledger and the
+    /// uploads outlive the pool.
+    Pool(Ledger& ledger, const Uploads& uploads, const PoolLayout& layout, size_t leaves,
+         uint64_t begin = 0);
 
     Residency& residency() { return residency_; }
     const Residency& residency() const { return residency_; }
@@ -39,22 +39,11 @@ public:
     void bind(TexelReads reads) const;
 
 private:
-    /// Pages go through it to buffers of the driver's own, so that writing one waits for no pass.
-    struct Staged {
-        GlStaging memory;
-        StagingRing ring;
-
-        Staged(size_t bytes, std::vector<GLuint> buffers)
-            : memory(bytes, std::move(buffers)), ring(memory) {}
-    };
-    void stage();
-
+    const Uploads& uploads_;
     PoolLayout layout_;
     uint64_t begin_;
-    bool takes_host_pages_;
     std::vector<gl::Buffer> buffers_;
     std::vector<gl::BufferTexture> texels_;
-    std::unique_ptr<Staged> staged_; // null: pages are written to the buffers themselves
     Residency residency_;
 };
 

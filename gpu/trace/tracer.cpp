@@ -11,6 +11,7 @@
 #include "shaders/layout.h"
 
 #include <algorithm>
+#include <bit>
 #include <cassert>
 #include <utility>
 
@@ -36,12 +37,19 @@ size_t packets_a_lane(size_t rays, size_t packet, const KernelVariant& variant, 
     return std::clamp<size_t>(rays / packet / lanes, 1, kLaneRays / packet);
 }
 
+Result<Done> check_answers(const PassSlot& slot) {
+    if (slot.is_complete())
+        return Done{};
+    return Error{"the driver cannot render to RGBA32UI textures, which answers come back in"};
+}
+
 } // namespace
 
 Result<MemoryPlan> plan_memory(uint64_t budget_bytes, const DeviceInfo& device,
                                uint64_t bytes_per_ray, uint64_t buffer_bytes) {
     MemoryPlan plan;
     plan.bytes_per_ray = bytes_per_ray;
+    plan.passes = device.passes_in_flight;
     plan.budget_bytes = budget_bytes;
     plan.batch_rays = kBlockRays;
     const uint64_t smallest = plan.ray_bytes() + kSmallestPool;
@@ -54,8 +62,9 @@ Result<MemoryPlan> plan_memory(uint64_t budget_bytes, const DeviceInfo& device,
     // want the rest. The share is cut off whether whole blocks fill it or not, so that a larger
     // budget never has a smaller pool.
     MemoryPlan most = plan;
-    most.batch_rays *= std::min(device.is_software ? kMaxBlocksInSoftware : kMaxBlocks,
-                                device.max_texture_size / OVC_TILE);
+    most.batch_rays *=
+        std::min(device.is_software ? kMaxBlocksInSoftware : kMaxBlocks / plan.passes,
+                 device.max_texture_size / OVC_TILE);
     const uint64_t ray_share = std::clamp(budget_bytes / 8, plan.ray_bytes(), most.ray_bytes());
     plan.batch_rays *= uint32_t(ray_share / plan.ray_bytes());
     while (plan.ray_bytes() > ray_share)
@@ -85,18 +94,22 @@ Tracer::Tracer(std::unique_ptr<Ledger> ledger, const MemoryPlan& plan, const Pas
       all_fit_(ovc::all_fit(pages, plan.pool(), top.room())),
       scene_(scene_leaf(bounds)),
       stack_depth_(stack_depth(top.depth)),
-      max_slots_(plan.batch_rays + plan.parted_rays()),
-      ray_buffer_(*ledger_, uint64_t(plan.batch_rays) * sizeof(RayState), "rays"),
-      pool_(*ledger_, plan.pool(), pages.size(), top.room()) {
-    variant_ = options.variants[RayKind{.portals = has_portals()}];
-    if (variant_.compute)
-        words_.emplace(*ledger_, max_slots_);
-    else
-        pixels_.emplace(*ledger_, plan.batch_rays);
+      uploads_(device.passes_in_flight > 1, plan.pool_bytes + plan.ray_bytes()),
+      pool_(*ledger_, uploads_, plan.pool(), pages.size(), top.room()) {
+    const KernelVariant variant = options.variants[RayKind{.portals = has_portals()}];
+    for (uint32_t i = 0; i < plan.passes; ++i)
+        slots_.emplace_back(*ledger_, plan.batch_rays, plan.parted_rays())
+            .make_answers(*ledger_, variant.compute, device_.passes_in_flight > 1);
     if (top.table_bytes() > 0)
         portal_buffer_.emplace(*ledger_, top.table_bytes(), "portals");
     if (plan.active_bytes > 0)
         active_buffer_.emplace(*ledger_, plan.active_bytes, "active leaves");
+}
+
+Tracer::~Tracer() {
+    // A pass that was forgotten may still read buffers that lie in this process's own pages.
+    if (device_.takes_host_pages && generation_ == gl::context_generation)
+        glFinish();
 }
 
 /// Does the setup that needs the memory to be allocated.
@@ -108,15 +121,17 @@ Result<Done> Tracer::set_up() {
         return allocated;
     if (portal_buffer_)
         portals_.show(*portal_buffer_, GL_RGBA32UI, 0, portal_buffer_->bytes());
-    rays_.show(ray_buffer_, GL_RGBA32UI, 0, ray_buffer_.bytes());
+    for (PassSlot& slot : slots_)
+        slot.rays.show(slot.ray_buffer, GL_RGBA32UI, 0, slot.ray_buffer.bytes());
     pool_.show();
     upload_top_level();
     if (active_buffer_) {
         active_.show(*active_buffer_, GL_R32UI, 0, active_buffer_->bytes());
         take_active(); // clears it
     }
-    if (pixels_ && !pixels_->complete())
-        return Error{"the driver cannot render to RGBA32UI textures, which answers come back in"};
+    for (const PassSlot& slot : slots_)
+        if (const Result<Done> drawn = check_answers(slot); !drawn)
+            return drawn;
     return check_gl("setting up the tracer");
 }
 
@@ -233,24 +248,9 @@ Moved Tracer::bring(std::span<const uint32_t> wanted, const GivePage& give) {
     return moved;
 }
 
-/// Makes the buffer for answers of the kernel that the variant is of. No pass is under way.
-Result<Done> Tracer::make_answers() {
-    if (variant_.compute == words_.has_value())
-        return Done{};
-    words_.reset();
-    pixels_.reset();
-    if (variant_.compute)
-        words_.emplace(*ledger_, max_slots_);
-    else
-        pixels_.emplace(*ledger_, uint32_t(ray_buffer_.bytes() / sizeof(RayState)));
-    if (pixels_ && !pixels_->complete())
-        return Error{"the driver cannot render to RGBA32UI textures, which answers come back in"};
-    return check_gl("allocating the answers of another kernel");
-}
-
 bool Tracer::can_run(const KernelVariant& variant) const {
     const PoolLayout& layout = pool_.layout();
-    uint64_t largest = ray_buffer_.bytes();
+    uint64_t largest = slots_[0].ray_buffer.bytes();
     for (uint32_t i = 0; i < layout.count(); ++i)
         largest = std::max(largest, layout.bytes_of(i));
     return can_read(device_, variant, layout.count(), largest) &&
@@ -268,11 +268,11 @@ bool Tracer::takes_float_pairs() const {
 }
 
 void Tracer::begin_to_compile(const KernelVariant& variant) {
-    kernels_.begin(shader_config(variant));
+    kernels_.begin(shader_config(kind_, variant));
 }
 
 bool Tracer::is_ready(const KernelVariant& variant) const {
-    return kernels_.is_ready(shader_config(variant));
+    return kernels_.is_ready(shader_config(kind_, variant));
 }
 
 RayForm Tracer::form() const {
@@ -288,10 +288,10 @@ uint32_t Tracer::stack_words(const KernelVariant& variant) const {
     return is_short ? std::min(stack_depth_, variant.register_words) : stack_depth_;
 }
 
-/// Returns the configuration of the kernel for the rays that were uploaded.
-ShaderConfig Tracer::shader_config(const KernelVariant& variant) const {
+/// Returns the configuration of the kernel for rays of a kind.
+ShaderConfig Tracer::shader_config(RayKind kind, const KernelVariant& variant) const {
     ShaderConfig config;
-    config.any_hit = kind_.any_hit;
+    config.any_hit = kind.any_hit;
     config.certify = options_.certify;
     config.counts = options_.counts;
     config.portals = has_portals();
@@ -312,31 +312,37 @@ ShaderConfig Tracer::shader_config(const KernelVariant& variant) const {
     config.deal_groups = variant.deal_groups;
     config.reads = variant.reads;
     config.group_size = variant.group_size;
-    config.packet = packs(variant) ? kPacketRays : 1;
+    config.packet = packs(kind, variant) ? kPacketRays : 1;
     config.refill = variant.refill && !never_refills_;
     return config;
 }
 
-Result<Done> Tracer::submit(SentRays& rays) {
+Result<Tracer::Pass> Tracer::submit(SentRays& rays) {
     assert(rays.size() > 0);
-    sent_ = &rays;
+    const auto free = std::ranges::find(slots_, nullptr, &PassSlot::sent);
+    assert(free != slots_.end());
+    PassSlot& slot = *free;
     rays.unpart();
-    kind_ = {.any_hit = rays.all_any_hit(), .portals = has_portals()};
-    kind_.coherent = rays.are_coherent();
-    variant_ = options_.variants[kind_];
-    packets_ = packs(variant_) && rays.part(max_slots_);
-    const std::span<const std::byte> bytes = rays.bytes();
-    assert(bytes.size() <= ray_buffer_.bytes());
-    glNamedBufferSubData(ray_buffer_.id(), 0, GLsizeiptr(bytes.size()), bytes.data());
-    kernel_seconds_ = 0;
-    if (const Result<Done> made = make_answers(); !made)
-        return made;
-    return launch();
+    slot.kind = {.any_hit = rays.all_any_hit(), .portals = has_portals()};
+    slot.kind.coherent = rays.are_coherent();
+    slot.variant = options_.variants[slot.kind];
+    slot.packets = packs(slot.kind, slot.variant) && rays.part(slot.max_slots);
+    slot.kernel_seconds = 0;
+    slot.sent = &rays;
+    uploads_.copy(rays.bytes(), slot.ray_buffer);
+    slot.make_answers(*ledger_, slot.variant.compute, device_.passes_in_flight > 1);
+    Result<Done> done = check_answers(slot);
+    if (done)
+        done = launch(slot);
+    if (done)
+        return size_t(free - slots_.begin());
+    slot.sent = nullptr;
+    return done.error();
 }
 
-Result<Done> Tracer::launch() {
-    ShaderConfig config = shader_config(variant_);
-    config.packet = packets_ ? kPacketRays : 1; // not where too many rays had to be parted
+Result<Done> Tracer::launch(PassSlot& slot) {
+    ShaderConfig config = shader_config(slot.kind, slot.variant);
+    config.packet = slot.packets ? kPacketRays : 1; // not where too many rays had to be parted
     const Result<GLuint> program = kernels_.program(config);
     if (!program)
         return program.error();
@@ -344,7 +350,7 @@ Result<Done> Tracer::launch() {
     glPushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, 0, -1, "pass");
     glUseProgram(*program);
     pool_.bind(config.reads);
-    rays_.bind(OVC_BINDING_RAYS, config.reads);
+    slot.rays.bind(OVC_BINDING_RAYS, config.reads);
     if (has_portals())
         portals_.bind(OVC_BINDING_PORTALS, config.reads);
     if (config.tell_active)
@@ -352,25 +358,26 @@ Result<Done> Tracer::launch() {
                            GL_R32UI);
     size_t group_rays = size_t(config.group_size) * config.packet;
     if (config.refill)
-        group_rays *= packets_a_lane(sent_->slots(), config.packet, variant_, device_.is_software);
+        group_rays *=
+            packets_a_lane(slot.sent->slots(), config.packet, slot.variant, device_.is_software);
     const Stopwatch watch;
     if (device_.is_software)
         driver_threads_.start();
     else
-        glBeginQuery(GL_TIME_ELAPSED, time_.id());
-    if (words_)
-        words_->dispatch(*program, sent_->slots(), group_rays);
+        glBeginQuery(GL_TIME_ELAPSED, slot.time.id());
+    if (slot.words)
+        slot.words->dispatch(*program, slot.sent->slots(), group_rays);
     else
-        pixels_->draw(sent_->size());
+        slot.pixels->draw(slot.sent->size());
     if (!device_.is_software)
         glEndQuery(GL_TIME_ELAPSED);
     glPopDebugGroup();
-    if (finishes_passes_)
+    if (device_.passes_in_flight == 1)
         glFinish();
     else
         glFlush();
     if (device_.is_software)
-        kernel_seconds_ += driver_threads_.seconds_each().value_or(watch.seconds());
+        slot.kernel_seconds += driver_threads_.seconds_each().value_or(watch.seconds());
     return check_gl("starting a pass");
 }
 
@@ -386,47 +393,68 @@ std::vector<uint32_t> Tracer::take_active() {
     return active;
 }
 
-void Tracer::read(Answers& answers) {
-    if (words_)
-        words_->read(answers, sent_->slots());
+void Tracer::read(PassSlot& slot, Answers& answers) {
+    if (slot.words)
+        slot.words->read(answers, slot.sent->slots());
     else
-        pixels_->read(answers, sent_->size());
-    for (const auto& [ray, slot] : sent_->parted())
-        answers.move(ray, slot);
-    answers.times = options_.certify ? std::span<const LocalTime>() : sent_->times();
+        slot.pixels->read(answers, slot.sent->size());
+    for (const auto& [ray, from] : slot.sent->parted())
+        answers.move(ray, from);
+    answers.times = options_.certify ? std::span<const LocalTime>() : slot.sent->times();
     if (!device_.is_software)
-        kernel_seconds_ += time_.seconds();
+        slot.kernel_seconds += slot.time.seconds();
 }
 
 /// Whether the kernel gave up many rays, which matters because doubles decide a ray slower than a
 /// pass does.
-bool Tracer::lost_many(const Answers& answers) const {
+bool Tracer::lost_many(const Answers& answers, size_t rays) {
     const auto lost =
-        std::count_if(answers.names.begin(), answers.names.begin() + ptrdiff_t(sent_->size()),
+        std::count_if(answers.names.begin(), answers.names.begin() + ptrdiff_t(rays),
                       [](uint32_t name) { return (name & ~OVC_SAYS_MORE) == OVC_CAPPED; });
-    return size_t(lost) > sent_->size() / kMaxLostShare;
+    return size_t(lost) > rays / kMaxLostShare;
 }
 
 /// Makes later kernels give up fewer rays: first by a stack for all words, then by giving each ray
 /// all the rounds there are. Returns false if they already give up as few as possible.
-bool Tracer::go_on_longer() {
-    if (stack_words(variant_) < stack_depth_)
+bool Tracer::go_on_longer(const KernelVariant& variant) {
+    if (stack_words(variant) < stack_depth_)
         return long_stacks_ = true;
-    return variant_.refill && !std::exchange(never_refills_, true);
+    return variant.refill && !std::exchange(never_refills_, true);
 }
 
-Result<Done> Tracer::collect(Answers& answers) {
-    read(answers);
-    while (lost_many(answers) && go_on_longer()) {
+bool Tracer::are_passes_under_way() const {
+    return std::ranges::any_of(slots_, [](const PassSlot& slot) { return slot.sent; });
+}
+
+Result<Done> Tracer::collect(Pass pass, Answers& answers) {
+    PassSlot& slot = slots_[pass];
+    assert(slot.sent);
+    struct Over {
+        PassSlot& slot;
+        ~Over() { slot.sent = nullptr; }
+    } const over{slot}; // also where an exception ends this
+    return collect(slot, answers);
+}
+
+Result<Done> Tracer::collect(PassSlot& slot, Answers& answers) {
+    kind_ = slot.kind;
+    read(slot, answers);
+    while (lost_many(answers, slot.sent->size()) && go_on_longer(slot.variant)) {
         // If all pages fit they stay in place. Otherwise pages may have been evicted since the
         // pass.
         if (!all_fit_)
             break;
-        if (Result<Done> ok = launch(); !ok)
+        if (Result<Done> ok = launch(slot); !ok)
             return ok;
-        read(answers);
+        read(slot, answers);
     }
+    kernel_seconds_ = slot.kernel_seconds;
     return check_gl("reading the answers of a pass");
+}
+
+Result<Done> Tracer::trace(SentRays& rays, Answers& answers) {
+    const Result<Pass> pass = submit(rays);
+    return pass ? collect(*pass, answers) : pass.error();
 }
 
 } // namespace ovc

@@ -12,8 +12,10 @@
 #include "gpu/gl/workarounds.h"
 #include "gpu/page/top_level.h"
 #include "gpu/trace/answers.h"
+#include "gpu/trace/pass_slot.h"
 #include "gpu/trace/pool.h"
 #include "gpu/trace/sent_rays.h"
+#include "gpu/trace/uploads.h"
 #include "gpu/tuning/kernel_variant.h"
 #include "shaders/layout.h"
 
@@ -36,6 +38,7 @@ struct PassOptions {
 struct MemoryPlan {
     uint64_t budget_bytes = 0;
     uint32_t batch_rays = 0; // max rays in a pass
+    uint32_t passes = 1;     // that may be under way together, each with its rays and answers
     uint64_t pool_bytes = 0;
     uint64_t buffer_bytes = ~uint64_t(0); // max of one of the pool's buffers
     uint64_t active_bytes = 0; // 4 a leaf: passes mark the pages that rays are traced through; or 0
@@ -45,7 +48,9 @@ struct MemoryPlan {
     /// How many more answers there is room for: rays that packets part (gpu/trace/packets.h).
     uint32_t parted_rays() const { return batch_rays / 64 / kBlockRays * kBlockRays; }
     PoolLayout pool() const { return {pool_bytes, buffer_bytes}; }
-    uint64_t ray_bytes() const { return batch_rays * bytes_per_ray + parted_rays() * kAnswerBytes; }
+    uint64_t ray_bytes() const {
+        return passes * (batch_rays * bytes_per_ray + parted_rays() * kAnswerBytes);
+    }
 };
 
 /// Returns the plan for a budget, clamped to the device; the bytes of portals are not yet taken
@@ -65,6 +70,8 @@ struct Moved {
 /// Traces rays on the device. All calls need the context current.
 class Tracer {
 public:
+    ~Tracer();
+
     /// Returns a tracer with nothing resident but the tree. pages lie in `bounds`, and top is the
     /// tree over them, for which is_usable() in the plan's pool; pages, top and kernels outlive the
     /// tracer. Error of the kind OutOfGpuMemory: the driver refused the plan's bytes; a smaller
@@ -104,27 +111,34 @@ public:
 
     /// How submit() wants its rays, until the next update(). At any time.
     RayForm form() const;
+    /// A pass under way: the number of its slot.
+    using Pass = size_t;
     /// Sends the rays (at least one, at most plan.batch_rays) on their way through the pages that
-    /// are resident now. An answer is for all pages on the way up to the one that it names, for
-    /// which the ray waits, or for all pages. Pages moved in after this call serve the next pass;
-    /// they may be uploaded while this one runs. If all rays ask whether anything is hit, answers
-    /// do not tell which triangle is. The rays, of which some may be moved, live until collect().
-    Result<Done> submit(SentRays& rays);
+    /// are resident now, behind the passes that are under way, fewer than plan.passes. An answer is
+    /// for all pages on the way up to the one that it names, for which the ray waits, or for all
+    /// pages. Pages moved in after this call serve the next pass; they may be uploaded while this
+    /// one runs. If all rays ask whether anything is hit, answers do not tell which triangle is.
+    /// The rays, of which some may be moved, live until collect().
+    Result<Pass> submit(SentRays& rays);
     /// Takes these variants from now on.
     void use(const ChosenVariants& variants) { options_.variants = variants; }
-    /// The kind of the rays that were submitted last.
+    /// The kind of the rays whose answers were collected last.
     RayKind ray_kind() const { return kind_; }
 
     /// Whether the device and the scene suit the variant.
     bool can_run(const KernelVariant& variant) const;
-    /// Begins to compile the kernel of the last pass as another variant; is_ready() tells whether
-    /// that is over.
+    /// Begins to compile the kernel for rays of that kind as another variant; is_ready() tells
+    /// whether that is over.
     void begin_to_compile(const KernelVariant& variant);
     bool is_ready(const KernelVariant& variant) const;
 
-    /// Waits for the answers of the pass that was submitted. In fast precision they refer to its
+    /// Waits for the answers of the pass, which is over then. In fast precision they refer to its
     /// rays.
-    Result<Done> collect(Answers& answers);
+    Result<Done> collect(Pass pass, Answers& answers);
+    /// Submits the rays, and waits for their answers.
+    Result<Done> trace(SentRays& rays, Answers& answers);
+    /// Whether passes were submitted that are not collected.
+    bool are_passes_under_way() const;
 
     /// The seconds that the kernel took in the pass that was collected last, without the transfer
     /// of rays and answers: by the device's clock, or for a software renderer by DriverThreads.
@@ -147,50 +161,43 @@ private:
     /// Whether rays of the pass may have to wait for a page.
     bool may_wait() const { return !all_fit_; }
     bool takes_float_pairs() const;
-    ShaderConfig shader_config(const KernelVariant& variant) const;
-    Result<Done> make_answers();
-    bool packs(const KernelVariant& variant) const {
-        return variant.packets && kind_.coherent && !kind_.portals;
+    ShaderConfig shader_config(RayKind kind, const KernelVariant& variant) const;
+    static bool packs(RayKind kind, const KernelVariant& variant) {
+        return variant.packets && kind.coherent && !kind.portals;
     }
     uint32_t stack_words(const KernelVariant& variant) const;
-    Result<Done> launch();
-    void read(Answers& answers);
-    bool lost_many(const Answers& answers) const;
-    bool go_on_longer();
+    Result<Done> launch(PassSlot& slot);
+    Result<Done> collect(PassSlot& slot, Answers& answers);
+    void read(PassSlot& slot, Answers& answers);
+    static bool lost_many(const Answers& answers, size_t rays);
+    bool go_on_longer(const KernelVariant& variant);
     void say_where(uint32_t leaf);
     void upload_top_level();
     uint32_t way_to(uint32_t leaf, const Link& link) const;
 
+    const uint32_t generation_ = gl::context_generation;
     std::unique_ptr<Ledger> ledger_; // the objects below keep its address
     KernelCache& kernels_;
     PassOptions options_;
     std::span<const Page> page_data_;
     const DeviceInfo device_;
-    RayKind kind_;                                  // of the rays of the pass
-    KernelVariant variant_;                         // of the pass
+    RayKind kind_;                                  // of the pass that was collected last
     bool long_stacks_ = false;                      // eight words were too few
     bool never_refills_ = false;                    // rays need all rounds that there are
     mutable std::optional<bool> keeps_float_pairs_; // the driver; asked when somebody wants to know
     const bool counts_rounds_ = needs(Workaround::CountedRounds);
     const bool registers_lose_words_ = needs(Workaround::ShortRegisterStack);
-    const bool finishes_passes_ = needs(Workaround::FinishedPass);
     const TopLevel& top_;
-    bool all_fit_;             // the pool has room for all pages and the tree
-    Leaf scene_;               // the whole scene as one leaf: the top-level tree's frame
-    SentRays* sent_ = nullptr; // rays of the pass
-    uint32_t stack_depth_;     // words with which no ray is lost
-    uint32_t max_slots_;       // of a pass
-    bool packets_ = false;     // the kernel takes rays two at a time
-    gl::Buffer ray_buffer_;
-    gl::BufferTexture rays_;
-    std::optional<AnswerPixels> pixels_; // of the fragment kernel
-    std::optional<AnswerWords> words_;   // of the compute kernel
+    bool all_fit_;         // the pool has room for all pages and the tree
+    Leaf scene_;           // the whole scene as one leaf: the top-level tree's frame
+    uint32_t stack_depth_; // words with which no ray is lost
+    Uploads uploads_;
+    std::vector<PassSlot> slots_;
     std::optional<gl::Buffer> portal_buffer_;
     gl::BufferTexture portals_;
     std::optional<gl::Buffer> active_buffer_;
     gl::BufferTexture active_;
     Pool pool_;
-    gl::TimeQuery time_;
     DriverThreads driver_threads_ = DriverThreads::find();
     double kernel_seconds_ = 0;
 };

@@ -49,11 +49,9 @@ protected:
         std::vector<Answer> answers(rays.size());
         gl->run([&](GlState&) {
             SentRays rays_sent = send(tracer->form(), states);
-            const Result<Done> sent = tracer->submit(rays_sent);
-            ASSERT_TRUE(sent) << sent.error().message;
             Answers all;
-            const Result<Done> back = tracer->collect(all);
-            ASSERT_TRUE(back) << back.error().message;
+            const Result<Done> traced = tracer->trace(rays_sent, all);
+            ASSERT_TRUE(traced) << traced.error().message;
             for (size_t i = 0; i < answers.size(); ++i)
                 answers[i] = all[i];
             EXPECT_GT(tracer->kernel_seconds(), 0);

@@ -60,8 +60,7 @@ void check_config(const ovc_scene_config& config, const DeviceInfo& device) {
         if (config.level1 == OVC_LEVEL1_GRID && config.level1_build != OVC_LEVEL1_BUILD_TOP_DOWN)
             refuse(format_text("{}: a grid is built top-down; it has no leaves to merge", name));
         if (config.gpu_memory_bytes)
-            if (const auto plan =
-                    plan_memory(config.gpu_memory_bytes, device, thesis::LeafPasses::kBytesPerRay);
+            if (const auto plan = thesis::LeafPasses::plan_memory(config.gpu_memory_bytes, device);
                 !plan)
                 throw Failure{OVC_ERROR_OUT_OF_BUDGET, plan.error().message};
         return;

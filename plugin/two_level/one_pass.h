@@ -43,8 +43,8 @@ public:
             if (Result<Done> asked = watch_.go_on(traced, query_.rays.size()); !asked)
                 return asked;
             Batch& done = batches[finished++ % batches.size()];
-            if (const Result<size_t> passed = passes_.finish_pass(done); !passed)
-                return passed.error();
+            if (const Result<Done> passed = passes_.finish_pass(done); !passed)
+                return passed;
             begin_next();
             resolve(done);
             traced = size_t(done.rays.back()) + 1;

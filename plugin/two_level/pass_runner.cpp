@@ -300,36 +300,70 @@ void PassRunner::tune(GlState& state, SentRays& rays, const PassCost& pass) {
 
 void PassRunner::begin_pass(Batch& batch, std::span<const uint32_t> wanted) {
     assert(tracer_ && !batch.rays.empty() && batch.rays.size() <= plan_.batch_rays);
-    assert(batch.sent.size() == batch.rays.size());
+    assert(batch.sent.size() == batch.rays.size() && batch.stage == Batch::Stage::None);
     batch.result = {};
-    batch.is_under_way = true;
-    gl_.begin(batch.job, [this, &batch, pages = std::vector(wanted.begin(), wanted.end())](
-                             GlState& state) { trace(state, batch, pages); });
+    batch.pass = {};
+    batch.stage = Batch::Stage::Sent;
+    gl_.begin(batch.sending, [this, &batch, pages = std::vector(wanted.begin(), wanted.end())](
+                                 GlState& state) { send(state, batch, pages); });
+    sent_.push_back(&batch);
+    // The device always has something to do: a pass is collected once the next one is sent.
+    while (sent_.size() >= passes_in_flight())
+        begin_to_collect();
 }
 
-/// Runs the pass. Called on the context's thread.
-void PassRunner::trace(GlState& state, Batch& batch, std::span<const uint32_t> wanted) {
-    PassResult& result = batch.result;
-    const size_t count = batch.rays.size();
-    const Stopwatch watch;
+/// Begins to collect the first pass that was sent.
+void PassRunner::begin_to_collect() {
+    Batch& batch = *sent_.front();
+    sent_.pop_front();
+    batch.stage = Batch::Stage::Collected;
+    gl_.begin(batch.collecting, [this, &batch](GlState& state) { collect(state, batch); });
+}
+
+/// Sends the pass. Called on the context's thread.
+void PassRunner::send(GlState& state, Batch& batch, std::span<const uint32_t> wanted) {
     if (!is_ours(state))
         return;
+    const Stopwatch watch;
     tracer_->use(variants(state));
-    result.done = tracer_->submit(batch.sent);
-    if (result.done)
-        result.moved = move_in(wanted);
-    if (result.done)
-        result.done = tracer_->collect(batch.answers);
-    result.alive = state.context.alive(); // a dead context leaves anything in the answers
-    result.seconds = watch.seconds();
-    result.kernel_seconds = tracer_->kernel_seconds();
-    if (result.alive && result.done && measures())
-        tune(state, batch.sent, {count, result.kernel_seconds, result.seconds});
+    const Result<Tracer::Pass> pass = tracer_->submit(batch.sent);
+    if (pass)
+        batch.pass = *pass;
+    else
+        batch.result.done = pass.error();
+    if (pass)
+        batch.result.moved = move_in(wanted);
+    batch.result.seconds = watch.seconds();
 }
 
-Result<size_t> PassRunner::finish_pass(Batch& batch) {
-    gl_.finish(batch.job, [this] { tracing_.watch.keeps_on(); });
-    batch.is_under_way = false;
+/// Collects the answers of the pass. Called on the context's thread.
+void PassRunner::collect(GlState& state, Batch& batch) {
+    PassResult& result = batch.result;
+    if (!is_ours(state))
+        return;
+    const Stopwatch watch;
+    if (batch.pass)
+        result.done = tracer_->collect(*batch.pass, batch.answers);
+    result.alive = state.context.alive(); // a dead context leaves anything in the answers
+    result.seconds += watch.seconds();
+    result.kernel_seconds = tracer_->kernel_seconds();
+    if (result.alive && result.done && measures() && !tracer_->are_passes_under_way())
+        tune(state, batch.sent, {batch.rays.size(), result.kernel_seconds, result.seconds});
+}
+
+size_t PassRunner::moved_beside(Batch& batch) {
+    gl_.finish(batch.sending, [this] { tracing_.watch.keeps_on(); });
+    return size_t(batch.result.moved.pages);
+}
+
+Result<Done> PassRunner::finish_pass(Batch& batch) {
+    if (batch.stage == Batch::Stage::Sent)
+        begin_to_collect();
+    assert(batch.stage == Batch::Stage::Collected);
+    const auto idle = [this] { tracing_.watch.keeps_on(); };
+    gl_.finish(batch.collecting, idle); // after the other
+    gl_.finish(batch.sending, idle);
+    batch.stage = Batch::Stage::None;
     const auto& [done, alive, moved, seconds, kernel_seconds] = batch.result;
     if (!alive)
         return lost();
@@ -344,16 +378,19 @@ Result<size_t> PassRunner::finish_pass(Batch& batch) {
     statistics.seconds_kernel += kernel_seconds;
     statistics.pages_in += moved.pages;
     statistics.bytes_in += moved.bytes;
-    return size_t(moved.pages);
+    return Done{};
 }
 
 void PassRunner::abandon() {
+    while (!sent_.empty())
+        begin_to_collect();
     for (Batch& batch : batches_)
-        if (std::exchange(batch.is_under_way, false))
-            try {
-                gl_.finish(batch.job, [] {});
-            } catch (...) { // the call has failed already
-            }
+        if (std::exchange(batch.stage, Batch::Stage::None) != Batch::Stage::None)
+            for (GlThread::Job* const job : {&batch.sending, &batch.collecting})
+                try {
+                    gl_.finish(*job, [] {});
+                } catch (...) { // the call has failed already
+                }
 }
 
 std::vector<uint32_t> PassRunner::take_active() {

@@ -13,8 +13,10 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <deque>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -24,7 +26,7 @@ namespace ovc {
 struct PassResult {
     Result<Done> done = Done{};
     bool alive = false; // the context is
-    Moved moved;
+    Moved moved;        // beside the pass; there as soon as the pass is sent
     double seconds = 0, kernel_seconds = 0;
 };
 
@@ -34,9 +36,11 @@ struct Batch {
     std::array<size_t, 3> of_waves{}; // the rays of each wave, which lie together
     SentRays sent;                    // the same rays
     Answers answers;                  // of its pass
-    GlThread::Job job;                // the pass
-    PassResult result;                // of the pass, once it is over
-    bool is_under_way = false;
+    // Its pass is sent to the device, and later its answers are collected.
+    enum class Stage { None, Sent, Collected } stage = Stage::None; // that was begun last
+    GlThread::Job sending, collecting;
+    std::optional<Tracer::Pass> pass; // none where it could not be sent
+    PassResult result;
 
     /// Gives back the memory. No pass is under way.
     void clear() {
@@ -81,9 +85,13 @@ public:
     /// Begins to trace the rays of the batch (not empty, at most plan().batch_rays) in one pass,
     /// behind those that were begun before. Beside the pass, pages of `wanted` move in.
     void begin_pass(Batch& batch, std::span<const uint32_t> wanted);
-    /// Waits for the pass of a batch, whose answers are in it then. Returns how many pages were
-    /// moved. Error: the context is lost, or GL's.
-    Result<size_t> finish_pass(Batch& batch);
+    /// Returns how many pages were moved beside the pass of a batch; waits until it is sent.
+    size_t moved_beside(Batch& batch);
+    /// Waits for the pass of a batch, the first of those under way, whose answers are in it then.
+    /// Error: the context is lost, or GL's.
+    Result<Done> finish_pass(Batch& batch);
+    /// How many passes the device has under way at once.
+    uint32_t passes_in_flight() const { return gl_.info().passes_in_flight; }
     /// When it goes, no pass is under way: it waits for those that a call which ends early has
     /// begun, whatever they come to.
     class Scope {
@@ -103,14 +111,15 @@ public:
     std::vector<uint32_t> take_active();
 
     /// Whether pages are to move in beside a pass.
-    bool moves_beside() const { return tracing_.options.beside.value_or(!gl_.info().is_software); }
+    bool moves_beside() const { return tracing_.options.beside.value_or(passes_in_flight() > 1); }
     /// Fewer rays are not worth a pass while others wait.
     size_t few_rays() const { return std::min<size_t>(4096, plan_.batch_rays / 4); }
     /// Returns how many of `rays` a pass takes, so that it keeps the device busy and leaves
     /// something to do beside it. At most plan().batch_rays.
     size_t part_rays(size_t rays) const;
     /// Three batches, kept between calls, take turns: one is with the kernel and one waits for it,
-    /// while the answers of the third are resolved and it is filled again.
+    /// on the device where that has several passes under way, while the answers of the third are
+    /// resolved and it is filled again.
     std::array<Batch, 3>& batches() { return batches_; }
 
     const MemoryPlan& plan() const { return plan_; }
@@ -130,7 +139,9 @@ private:
     bool measures() const;
     ChosenVariants variants(GlState& state) const;
     void tune(GlState& state, SentRays& rays, const PassCost& pass);
-    void trace(GlState& state, Batch& batch, std::span<const uint32_t> wanted);
+    void send(GlState& state, Batch& batch, std::span<const uint32_t> wanted);
+    void begin_to_collect();
+    void collect(GlState& state, Batch& batch);
     void abandon();
     /// Whether the tracer's context is alive. Called on the context's thread.
     bool is_ours(const GlState& state) const {
@@ -147,6 +158,7 @@ private:
     std::atomic<uint64_t> gpu_bytes_{0};
     uint32_t tracer_generation_ = 0; // of the context that it was made in
     std::array<Batch, 3> batches_;
+    std::deque<Batch*> sent_; // those that nobody collects yet, the first that was sent in front
     double seconds_a_ray_ = 1e-5; // of the pass before
     SharedBudget::Share share_;   // closes the tracer
 };

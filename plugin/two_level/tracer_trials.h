@@ -26,7 +26,7 @@ public:
 
     std::optional<double> time(const KernelVariant& variant) override {
         tracer_.use(ChosenVariants(variant));
-        if (!tracer_.submit(rays_) || !tracer_.collect(answers_))
+        if (!tracer_.trace(rays_, answers_))
             return {};
         if (expected_.names.empty())
             expected_ = answers_;

@@ -1,19 +1,52 @@
 // SPDX-License-Identifier: Apache-2.0
 // WaveRound: runs passes over the rays that are ready in one wave, or in two that share the passes.
-// As in OnePass, the rays are parted: beside the pass of one part, the part before is resolved and
-// the next one is made ready.
+// As in OnePass, the rays are parted: beside the passes of some parts, the part before them is
+// resolved and the next one is made ready.
 #pragma once
 
 #include "plugin/two_level/wave.h"
 
 #include <algorithm>
 #include <cassert>
+#include <deque>
 #include <numeric>
 #include <tuple>
 #include <utility>
 #include <vector>
 
 namespace ovc {
+
+/// The pages that were moved beside passes. The rays of these passes may come to wait for them, so
+/// they are called up until those rays are resolved.
+class MovedBeside {
+public:
+    /// passes: how many steps later than it is sent a batch is resolved.
+    explicit MovedBeside(size_t passes) : passes_(passes) {}
+
+    /// Takes the pages that the step has moved, and calls up(pages) for each step whose rays were
+    /// not resolved before this one.
+    template <class CallUp>
+    void call_up_after_step(std::vector<uint32_t> moved, CallUp&& up) {
+        steps_.push_back(std::move(moved));
+        drop_before(passes_ + 1);
+        std::ranges::for_each(steps_, up);
+    }
+    /// The same once the last batch is resolved.
+    template <class CallUp>
+    void call_up_last(CallUp&& up) {
+        drop_before(passes_);
+        std::ranges::for_each(steps_, up);
+    }
+
+private:
+    void drop_before(size_t steps) {
+        while (steps_.size() > steps)
+            steps_.pop_front();
+    }
+
+    size_t passes_;
+    std::deque<std::vector<uint32_t>> steps_;
+};
 
 template <class... Queries>
 class WaveRound {
@@ -41,41 +74,53 @@ public:
         if (ready() == 0)
             return passes_.lost(); // nothing could be moved in
         const PassRunner::Scope scope(passes_);
-        Batch* now = &passes_.batches()[0];
-        Batch* other = &passes_.batches()[1];
-        load(*other, 0);
-        load(*now, std::min(passes_.part_rays(ready()), max_rays));
-        std::vector<uint32_t> beside; // pages moved in beside the pass: its rays may wait for them
+        load(batch(0), std::min(passes_.part_rays(ready()), max_rays));
+        std::deque<Batch*> under_way; // the first that was begun in front
+        Batch* answered = nullptr;
+        MovedBeside beside(passes_.passes_in_flight());
         bool goes_on = true;
-        while (!now->rays.empty()) {
-            assert(now->rays.size() <= max_rays);
-            max_rays -= now->rays.size();
+        for (size_t step = 0; !under_way.empty() || !batch(step).rays.empty(); ++step) {
+            Batch& now = batch(step);
+            const bool begins = !now.rays.empty();
             std::vector<uint32_t> wanted_beside;
-            if (passes_.moves_beside())
-                wanted_beside = wanted();
-            passes_.begin_pass(*now, wanted_beside);
-            resolve(*other);
+            if (begins) {
+                assert(now.rays.size() <= max_rays);
+                max_rays -= now.rays.size();
+                if (passes_.moves_beside())
+                    wanted_beside = wanted();
+                passes_.begin_pass(now, wanted_beside);
+                under_way.push_back(&now);
+            }
+            if (answered)
+                resolve(*std::exchange(answered, nullptr));
             if (tracing_.scene.store)
                 passes_.read_ahead(worth_moving());
             goes_on = meanwhile() && goes_on;
             const bool enough = ready() >= passes_.few_rays();
-            load(*other, goes_on && enough ? std::min(passes_.part_rays(ready()), max_rays) : 0);
-            const Result<size_t> moved = passes_.finish_pass(*now);
-            if (!moved)
-                return moved.error();
-            assert(*moved <= wanted_beside.size());
-            wanted_beside.resize(*moved);
-            call_up(beside);
-            call_up(wanted_beside);
-            beside = std::move(wanted_beside);
-            std::swap(now, other);
+            load(batch(step + 1),
+                 goes_on && enough ? std::min(passes_.part_rays(ready()), max_rays) : 0);
+            if (!begins || under_way.size() == passes_.passes_in_flight()) {
+                answered = under_way.front();
+                under_way.pop_front();
+                if (const Result<Done> done = passes_.finish_pass(*answered); !done)
+                    return done;
+            }
+            if (!wanted_beside.empty())
+                wanted_beside.resize(passes_.moved_beside(now));
+            beside.call_up_after_step(std::move(wanted_beside),
+                                      [&](auto& moved) { call_up(moved); });
         }
-        resolve(*other);
-        call_up(beside);
+        if (answered)
+            resolve(*answered);
+        beside.call_up_last([&](auto& moved) { call_up(moved); });
         return tracing_.watch.unless_cancelled();
     }
 
 private:
+    /// Batches take turns: while some are with the device, the answers of another are resolved and
+    /// it is filled again.
+    Batch& batch(size_t step) { return passes_.batches()[step % (passes_.passes_in_flight() + 1)]; }
+
     template <class Body>
     void each(Body&& body) {
         std::apply([&](auto&... wave) { (body(wave), ...); }, waves_);

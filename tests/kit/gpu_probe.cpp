@@ -12,8 +12,10 @@
 #include "kdtree/test_soups.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <cstdlib>
+#include <deque>
 #include <random>
 #include <string>
 #include <vector>
@@ -39,7 +41,8 @@ std::string allocate(uint64_t bytes, const DeviceInfo& device) {
     const PoolLayout layout{bytes, device.max_buffer_texels * sizeof(uvec4)};
     std::string error = "null";
     {
-        Pool pool(ledger, layout, 1);
+        const Uploads uploads(device.passes_in_flight > 1, bytes);
+        Pool pool(ledger, uploads, layout, 1);
         const std::vector<uvec4> page(4096);
         if (const Result<Done> made = check_gl("allocating"); !made || ledger.refused) {
             error = "\"the driver refuses\"";
@@ -61,7 +64,8 @@ std::string upload(uint64_t page_bytes, double seconds, const DeviceInfo& device
     const uint64_t pool_bytes = std::max<uint64_t>(128 << 20, page_bytes);
     ledger.budget = pool_bytes;
     ledger.takes_host_pages = device.takes_host_pages;
-    Pool pool(ledger, {pool_bytes, device.max_buffer_texels * sizeof(uvec4)}, 1);
+    const Uploads uploads(device.passes_in_flight > 1, pool_bytes);
+    Pool pool(ledger, uploads, {pool_bytes, device.max_buffer_texels * sizeof(uvec4)}, 1);
     pool.show();
     const std::vector<uvec4> page(page_bytes / sizeof(uvec4), uvec4(7));
     pool.upload(0, page);
@@ -104,6 +108,22 @@ struct MovingScene {
     }
 };
 
+/// Seconds a pass where each is waited for before the next is sent (passes = 1), or where as many
+/// as `passes` are under way.
+double seconds_a_pass(Tracer& tracer, std::span<SentRays> rays, Answers& answers, size_t passes) {
+    constexpr size_t kPasses = 16;
+    std::deque<Tracer::Pass> under_way;
+    const Stopwatch watch;
+    for (size_t i = 0; i < kPasses; ++i) {
+        if (const Result<Tracer::Pass> sent = tracer.submit(rays[i % passes]))
+            under_way.push_back(*sent);
+        for (; under_way.size() >= (i + 1 < kPasses ? passes : 1); under_way.pop_front())
+            if (!tracer.collect(under_way.front(), answers))
+                return 1e9;
+    }
+    return watch.seconds() / double(kPasses);
+}
+
 /// Seconds of a pass alone, of moving half of the pages alone, and of both at once.
 Result<std::string> overlap(GlState& state, const DeviceInfo& device, double seconds) {
     const MovingScene scene;
@@ -119,16 +139,16 @@ Result<std::string> overlap(GlState& state, const DeviceInfo& device, double sec
     const size_t count = std::min<size_t>(scene.rays.size(), plan.batch_rays);
     SentRays rays = send((*tracer)->form(), std::span(scene.rays).first(count));
     Answers answers;
-    double pass = 1e9, move = 1e9, both = 1e9, first = 0;
+    double pass = 1e9, move = 1e9, both = 1e9, first = 0, alone = 1e9, behind = 1e9;
     uint64_t moved = 0;
     const Stopwatch watch;
     for (size_t round = 0; round < 3 || watch.seconds() < seconds; ++round) {
         const auto traced = [&](bool moves) {
             const Stopwatch one;
-            const Result<Done> sent = (*tracer)->submit(rays);
+            const Result<Tracer::Pass> sent = (*tracer)->submit(rays);
             if (moves)
                 moved = (*tracer)->bring((*tracer)->missing()).bytes;
-            const Result<Done> done = sent ? (*tracer)->collect(answers) : sent;
+            const Result<Done> done = sent ? (*tracer)->collect(*sent, answers) : sent.error();
             glFinish();
             return done ? one.seconds() : 1e9;
         };
@@ -139,10 +159,16 @@ Result<std::string> overlap(GlState& state, const DeviceInfo& device, double sec
         move = std::min(move, moving.seconds());
         pass = std::min(pass, traced(false)); // through the same pages as the next
         both = std::min(both, traced(true));
+        rays.unpart();
+        std::array batches{rays.first(count), rays.first(count)};
+        alone = std::min(alone, seconds_a_pass(**tracer, batches, answers, 1));
+        behind = std::min(behind, seconds_a_pass(**tracer, batches, answers, plan.passes));
     }
     return format_text("{\"rays\": {}, \"first_pass_seconds\": {}, \"pass_seconds\": {}, "
-                       "\"move_seconds\": {}, \"both_seconds\": {}, \"moved_bytes\": {}}",
-                       count, first, pass, move, both, moved);
+                       "\"move_seconds\": {}, \"both_seconds\": {}, \"moved_bytes\": {}, "
+                       "\"passes_under_way\": {}, \"one_by_one_seconds\": {}, "
+                       "\"behind_seconds\": {}}",
+                       count, first, pass, move, both, moved, plan.passes, alone, behind);
 }
 
 std::vector<uint64_t> pool_sizes(const DeviceInfo& device) {

@@ -31,8 +31,7 @@ protected:
             (*tracer)->bring((*tracer)->missing());
             ASSERT_TRUE((*tracer)->all_resident());
             SentRays sent = send((*tracer)->form(), states);
-            ASSERT_TRUE((*tracer)->submit(sent));
-            ASSERT_TRUE((*tracer)->collect(answers));
+            ASSERT_TRUE((*tracer)->trace(sent, answers));
         });
         return answers;
     }

@@ -33,7 +33,7 @@ LeafPasses::LeafPasses(std::unique_ptr<Ledger> ledger, const ovc::MemoryPlan& pl
       answers_(*ledger_, GL_RGBA32UI, sizeof(FrameAnswer), kRowRays, plan.batch_rays / kRowRays,
                "answers"),
       framebuffer_(answers_),
-      pool_(*ledger_, {plan.pool_bytes, plan.buffer_bytes}, pages.size()) {
+      pool_(*ledger_, uploads_, {plan.pool_bytes, plan.buffer_bytes}, pages.size()) {
     pool_.show();
 }
 

@@ -25,7 +25,12 @@ struct LeafPass {
 /// All calls need the context current.
 class LeafPasses {
 public:
-    /// `pages` must outlive the passes. plan counts kBytesPerRay a ray, and its pool holds the
+    /// Returns the plan for a budget. Passes go one by one.
+    static Result<ovc::MemoryPlan> plan_memory(uint64_t budget_bytes, DeviceInfo device) {
+        device.passes_in_flight = 1;
+        return ovc::plan_memory(budget_bytes, device, kBytesPerRay);
+    }
+    /// `pages` must outlive the passes. plan: as plan_memory() made it, and its pool holds the
     /// largest page. certify = false: fast precision. Error: GL refuses a texture or a buffer.
     static Result<std::unique_ptr<LeafPasses>> create(const ovc::MemoryPlan& plan,
                                                       const DeviceInfo& device,
@@ -60,6 +65,7 @@ private:
     gl::Texture2D answers_;
     gl::Framebuffer framebuffer_;
     gl::VertexArray vertex_array_;
+    const Uploads uploads_{/* behind_passes= */ false, 0};
     Pool pool_;
     std::optional<gl::Program> kernel_;
 };

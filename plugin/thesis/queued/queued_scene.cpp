@@ -109,9 +109,8 @@ Result<std::unique_ptr<QueuedScene>> build_queued_scene(const Soup& soup, GlThre
                                  soup.triangle_count(), OVC_MAX_TRIANGLES),
                      ErrorKind::InvalidArgument};
     auto scene = std::make_unique<QueuedScene>(soup, gl, options.certify);
-    const Result<ovc::MemoryPlan> plan = ovc::plan_memory(
-        options.budget_bytes ? options.budget_bytes : gl.info().default_budget_bytes(), gl.info(),
-        LeafPasses::kBytesPerRay);
+    const Result<ovc::MemoryPlan> plan = LeafPasses::plan_memory(
+        options.budget_bytes ? options.budget_bytes : gl.info().default_budget_bytes(), gl.info());
     if (!plan)
         return plan.error();
     scene->plan = *plan;
