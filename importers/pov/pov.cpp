@@ -211,7 +211,7 @@ private:
                     scene.radiosity = parse_radiosity(reader_);
                     continue;
                 }
-                if (token.is("photons") || token.is("hf_gray_16"))
+                if (token.is("photons") || token.is("hf_gray_16") || token.is("subsurface"))
                     reader_.omit(token.name->text, token.place, token.name->text + " is left out");
                 skip_arguments(reader_);
             } else

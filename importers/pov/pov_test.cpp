@@ -226,6 +226,10 @@ TEST(PovDirectives, MacrosGiveTheirOwnVariablesAsArguments) {
     EXPECT_VALUE(15, "T", macros + "Tell(Own(3), Own(5))");
     EXPECT_VALUE(20, "T", macros + "Tell(Own(3) + 1, Own(Own(5)))");
     EXPECT_VALUE(7, "G", macros + "Set(Of())");
+    // The macros end as the word behind A is looked at.
+    EXPECT_VALUE(8, "B[1]",
+                 "#macro In() #local A = array[2] { 7, 8 } A #end #macro Out() In() #end\n"
+                 "#declare B = Out()");
 }
 
 TEST(PovDirectives, LoopsAndConditionsNest) {

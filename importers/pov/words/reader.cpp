@@ -190,7 +190,10 @@ void Reader::pop_scope() {
     for (Name* name : scopes_.back().names)
         if (!name->bound.empty() && name->bound.back().scope + 1 == scopes_.size())
             name->bound.pop_back();
+    ended_.push_back(std::move(scopes_.back()));
     scopes_.pop_back();
+    if (ended_.size() > kEndedScopes)
+        ended_.pop_front();
 }
 
 Slot* Reader::find(const Name* name) const {
@@ -199,7 +202,8 @@ Slot* Reader::find(const Name* name) const {
 
 Value* Reader::value_of(const ValueHandle& handle) const {
     const auto scope = std::ranges::lower_bound(scopes_, handle.scope, {}, &Scope::serial);
-    if (scope == scopes_.end() || scope->serial != handle.scope)
+    if ((scope == scopes_.end() || scope->serial != handle.scope) &&
+        std::ranges::find(ended_, handle.scope, &Scope::serial) == ended_.end())
         return nullptr;
     if (!handle.item)
         return &handle.slot->value;

@@ -9,6 +9,7 @@
 #include "importers/file/files_read.h"
 #include "importers/pov/values/value.h"
 
+#include <deque>
 #include <filesystem>
 #include <functional>
 #include <set>
@@ -190,6 +191,9 @@ private:
         std::vector<Condition> open;
         Place called;
     };
+    /// So many scopes stay after their end: a macro's last word may name its variable, and macros
+    /// may end together with the word that is looked at to see whether an index follows.
+    static constexpr size_t kEndedScopes = 16;
     struct Scope {
         uint64_t serial; // ascending
         std::vector<Name*> names;
@@ -261,6 +265,7 @@ private:
     std::map<std::string, SourceFile*> by_path_;
     std::vector<Frame> frames_;
     std::vector<Scope> scopes_;
+    std::deque<Scope> ended_; // the last of them
     uint64_t last_scope_ = 0; // the serial number given last
     /// By the place of the body. Declaring a macro again and again keeps one of it.
     std::map<std::pair<const SourceFile*, size_t>, Macro> macros_;
