@@ -96,7 +96,7 @@ Tracer::Tracer(std::unique_ptr<Ledger> ledger, const MemoryPlan& plan, const Pas
       stack_depth_(stack_depth(top.depth)),
       uploads_(device.passes_in_flight > 1, plan.pool_bytes + plan.ray_bytes()),
       pool_(*ledger_, uploads_, plan.pool(), pages.size(), top.room()) {
-    const KernelVariant variant = options.variants[RayKind{.portals = has_portals()}];
+    const KernelVariant variant = options.variants[RayKind{.frames = RayKind::frames_of(top.portals.size())}];
     for (uint32_t i = 0; i < plan.passes; ++i)
         slots_.emplace_back(*ledger_, plan.batch_rays, plan.parted_rays())
             .make_answers(*ledger_, variant.compute, device_.passes_in_flight > 1);
@@ -323,7 +323,7 @@ Result<Tracer::Pass> Tracer::submit(SentRays& rays) {
     assert(free != slots_.end());
     PassSlot& slot = *free;
     rays.unpart();
-    slot.kind = {.any_hit = rays.all_any_hit(), .portals = has_portals()};
+    slot.kind = {.any_hit = rays.all_any_hit(), .frames = RayKind::frames_of(top_.portals.size())};
     slot.kind.coherent = rays.are_coherent();
     slot.variant = options_.variants[slot.kind];
     slot.packets = packs(slot.kind, slot.variant) && rays.part(slot.max_slots);

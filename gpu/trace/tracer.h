@@ -163,7 +163,7 @@ private:
     bool takes_float_pairs() const;
     ShaderConfig shader_config(RayKind kind, const KernelVariant& variant) const;
     static bool packs(RayKind kind, const KernelVariant& variant) {
-        return variant.packets && kind.coherent && !kind.portals;
+        return variant.packets && kind.coherent && !kind.has_portals();
     }
     uint32_t stack_words(const KernelVariant& variant) const;
     Result<Done> launch(PassSlot& slot);

@@ -17,15 +17,20 @@ using TimeVariant = FunctionRef<std::optional<double>(const KernelVariant&)>;
 struct VariantComparison {
     double ratio = 1;        // the candidate's time to the other's: the median of all rounds
     double base_seconds = 0; // min of all rounds
-    bool is_faster = false;  // beyond doubt: in every round, and by kWorthwhile in most
+    /// Beyond doubt: in all of a few rounds, in three of four where there are many, and by what is
+    /// worthwhile in most.
+    bool is_faster = false;
 };
 
-/// A variant that gains less than this is not worth the doubt.
-inline constexpr double kWorthwhile = 0.03;
+struct ComparisonLimits {
+    size_t rounds = 3; // > 0
+    /// A variant that gains less than this is not worth the doubt, which is less after more rounds.
+    double worthwhile = 0.03;
+};
 
-/// Times both in each of `rounds` (> 0), after a first trial of each that is not counted, in which
-/// drivers finish what they compile. Nothing: the candidate cannot be used.
+/// Times both in each round, after a first trial of each that is not counted, in which drivers
+/// finish what they compile. Nothing: the candidate cannot be used.
 std::optional<VariantComparison> compare(const KernelVariant& base, const KernelVariant& candidate,
-                                         size_t rounds, TimeVariant time);
+                                         const ComparisonLimits& limits, TimeVariant time);
 
 } // namespace ovc

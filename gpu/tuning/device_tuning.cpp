@@ -29,7 +29,7 @@ TuningLimits TuningLimits::thorough() {
             .kind_seconds = any,
             .due_seconds = 0,
             .min_rays = 1,
-            .rounds = 9,
+            .comparison = {.rounds = 15, .worthwhile = 0.015},
             .trial_seconds = 0.01,
             .in_one_go = true};
 }
@@ -65,7 +65,7 @@ std::optional<VariantComparison> DeviceTuning::compare_with_default(RayKind kind
                                                                     const KernelVariant& variant,
                                                                     const TuningLimits& limits,
                                                                     VariantTrials& trials) {
-    return compare(defaults_[kind], variant, limits.rounds,
+    return compare(defaults_[kind], variant, limits.comparison,
                    [&](const KernelVariant& v) { return trials.time(v); });
 }
 
@@ -109,9 +109,9 @@ void DeviceTuning::begin(RayKind kind, Search& search, VariantTrials& trials) {
     search.begun = true;
     const KernelVariant& base = defaults_[kind];
     const auto differs = [&](const KernelVariant& v) { // where a switch means nothing, it does not
-        const bool packs = (kind.coherent && !kind.portals) || !v.compute;
+        const bool packs = (kind.coherent && !kind.has_portals()) || !v.compute;
         return (packs || v.packets == base.packets) &&
-               (kind.portals || v.float_pairs == base.float_pairs);
+               (kind.has_portals() || v.float_pairs == base.float_pairs);
     };
     for (const KernelVariant& variant : neighbours(base, device_, /* other_kernel= */ true))
         if (differs(variant) && trials.can_run(variant))
@@ -179,8 +179,7 @@ void DeviceTuning::finish(RayKind kind, Search& search, const TuningLimits& limi
     const KernelVariant& base = defaults_[kind];
     KernelVariant chosen = base;
     const auto try_again = [&](const KernelVariant& variant) {
-        const std::optional<VariantComparison> again = compare(
-            base, variant, limits.rounds, [&](const KernelVariant& v) { return trials.time(v); });
+        const auto again = compare_with_default(kind, variant, limits, trials);
         tell(kind, variant, again);
         return again;
     };

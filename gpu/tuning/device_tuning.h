@@ -37,7 +37,7 @@ struct TuningLimits {
     /// rays pays nothing.
     double due_seconds = 0.1;
     size_t min_rays = 8192; // of a pass
-    size_t rounds = 3;
+    ComparisonLimits comparison{};
     double trial_seconds = 0.0015;
     bool in_one_go = false; // waits for the driver's compiler
 

@@ -99,9 +99,11 @@ ChosenVariants default_variants(const DeviceInfo& device, bool compute) {
     variant.register_words = kRegisterWords;
     variant.reads = TexelReads::Images;
     ChosenVariants variants(variant);
-    // Lanes that go alike end together, and taking up a ray means to go through the first portal.
+    // Lanes that go alike end together, and taking up a ray means to go through the first portal,
+    // to which rays among few frames have far to go.
     for (const bool any_hit : {false, true})
-        variants[{.any_hit = any_hit, .portals = true, .coherent = true}].refill = false;
+        variants[{.any_hit = any_hit, .frames = RayKind::Frames::Few, .coherent = true}].refill =
+            false;
     return variants;
 }
 
@@ -160,8 +162,9 @@ bool can_read(const DeviceInfo& device, const KernelVariant& variant, uint32_t b
 }
 
 std::string RayKind::text() const {
+    static constexpr const char* kFrames[] = {"one frame", "few frames", "many frames"};
     return format_text("{}, {} rays, {}", any_hit ? "any hit" : "nearest hit",
-                       coherent ? "coherent" : "scattered", portals ? "many frames" : "one frame");
+                       coherent ? "coherent" : "scattered", kFrames[size_t(frames)]);
 }
 
 } // namespace ovc

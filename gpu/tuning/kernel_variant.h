@@ -53,15 +53,24 @@ bool can_read(const DeviceInfo& device, const KernelVariant& variant, uint32_t b
 
 /// What the rays of a pass have in common as far as kernels care. Each kind has a variant.
 struct RayKind {
+    /// What they go through (shaders/portals.glsl): one frame, the frames of pages that reach far,
+    /// or those of instances.
+    enum class Frames { One, Few, Many };
+    static constexpr size_t kFewFrames = 256;
+    static Frames frames_of(size_t portals) {
+        return portals == 0 ? Frames::One : portals <= kFewFrames ? Frames::Few : Frames::Many;
+    }
+
     bool any_hit = false;
-    bool portals = false;  // they go through frames (shaders/portals.glsl)
+    Frames frames = Frames::One;
     bool coherent = false; // neighbours go alike (gpu/trace/packets.h)
 
-    static constexpr size_t kCount = 8;
-    size_t number() const { return size_t(any_hit) << 2 | size_t(portals) << 1 | size_t(coherent); }
+    static constexpr size_t kCount = 12;
+    size_t number() const { return (size_t(frames) << 1 | size_t(any_hit)) << 1 | size_t(coherent); }
     static RayKind of(size_t number) {
-        return {(number & 4) != 0, (number & 2) != 0, (number & 1) != 0};
+        return {(number & 2) != 0, Frames(number >> 2), (number & 1) != 0};
     }
+    bool has_portals() const { return frames != Frames::One; }
     /// Returns "nearest hits, scattered rays, one frame" and the like.
     std::string text() const;
 };

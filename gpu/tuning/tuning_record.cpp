@@ -16,7 +16,7 @@ namespace ovc {
 namespace fs = std::filesystem;
 
 // To be counted up whenever C++ changes what a variant means; kernels are in the file's name.
-static constexpr std::string_view kFirstLine = "overcast kernel variants 1";
+static constexpr std::string_view kFirstLine = "overcast kernel variants 2";
 
 std::string TuningRecord::text() const {
     std::string text(kFirstLine);

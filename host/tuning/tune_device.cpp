@@ -12,7 +12,7 @@
 namespace ovc {
 namespace {
 
-constexpr std::array kScenes{"knot", "fractal"}; // one frame, many
+constexpr std::array kScenes{"knot", "far-terrain", "fractal"}; // one frame, few, many
 constexpr uint32_t kSide = 512;                  // pixels
 
 Result<Done> trace_set(const RaySet& set, Backend& backend) {

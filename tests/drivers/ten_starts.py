@@ -3,9 +3,10 @@
 
 usage: ten_starts.py BUILD [--starts N]
 
-`overcast devices --tune` measures all variants so many times, each as if it were the first, while
-two other processes take all the time they get. What a variant takes is the median of all tables.
-Fails where a start has chosen a variant that takes 3 % longer than the best of its kind, or where a
+`overcast devices --tune` measures all variants so many times, each as if it were the first but for
+compiled kernels, while two other processes take all the time they get. What a variant takes is the
+median of all tables; those that fewer than half of the starts have measured are not in it. Fails
+where a start has chosen a variant that takes 3 % longer than the best of its kind, or where a
 rendering that nobody asked to measure spends more than 0.3 s on it.
 """
 import argparse
@@ -58,8 +59,11 @@ def main():
     tables, choices, failed = {}, [], 0
     with tempfile.TemporaryDirectory() as name, busy(2):
         folder = pathlib.Path(name)
+        kernels = folder / "tune"
         for start in range(asked.starts):
-            told = run(overcast, folder / f"tune-{start}", "devices", "--tune")
+            for record in kernels.glob("*.variants"):
+                record.unlink()
+            told = run(overcast, kernels, "devices", "--tune")
             print(f"start {start} has measured", flush=True)
             for kind, variant, ratio in TRIED.findall(told):
                 tables.setdefault(kind, {}).setdefault(variant, []).append(float(ratio))
@@ -70,11 +74,15 @@ def main():
         spent = seconds_spent(folder / "render")
         failed += spent > 0.3
         print(f"a rendering spends {spent:.3f} s")
-    medians = {kind: {variant: statistics.median(ratios) for variant, ratios in table.items()}
+    medians = {kind: {variant: statistics.median(ratios) for variant, ratios in table.items()
+                      if len(ratios) >= asked.starts / 2}
                for kind, table in tables.items()}
+    for kind, table in medians.items():
+        for variant, ratio in sorted(table.items(), key=lambda item: item[1]):
+            print(f"{kind}: {variant}, {ratio:.3f} of the default's time")
     for start, kind, variant, default in choices:
         best = min(1.0, *medians[kind].values())
-        ratio = (1.0 if default else medians[kind][variant]) / best
+        ratio = (1.0 if default else statistics.median(tables[kind][variant])) / best
         failed += ratio > 1.03
         print(f"start {start}, {kind}: {variant}, {ratio:.3f} of the best's time")
     print(f"{failed} failures")
