@@ -109,6 +109,7 @@ Result<Done> Tracer::set_up() {
     if (portal_buffer_)
         portals_.show(*portal_buffer_, GL_RGBA32UI, 0, portal_buffer_->bytes());
     rays_.show(ray_buffer_, GL_RGBA32UI, 0, ray_buffer_.bytes());
+    ray_words_.show(ray_buffer_, GL_R32UI, 0, ray_buffer_.bytes());
     pool_.show();
     upload_top_level();
     if (active_buffer_) {
@@ -325,9 +326,6 @@ Result<Done> Tracer::submit(SentRays& rays) {
     kind_.coherent = rays.are_coherent();
     variant_ = options_.variants[kind_];
     packets_ = packs(variant_) && rays.part(max_slots_);
-    const std::span<const std::byte> bytes = rays.bytes();
-    assert(bytes.size() <= ray_buffer_.bytes());
-    glNamedBufferSubData(ray_buffer_.id(), 0, GLsizeiptr(bytes.size()), bytes.data());
     kernel_seconds_ = 0;
     if (const Result<Done> made = make_answers(); !made)
         return made;
@@ -340,11 +338,18 @@ Result<Done> Tracer::launch() {
     const Result<GLuint> program = kernels_.program(config);
     if (!program)
         return program.error();
+    // Each time, because a kernel may write names in the places of rays.
+    const std::span<const std::byte> bytes = sent_->bytes();
+    assert(bytes.size() <= ray_buffer_.bytes());
+    glNamedBufferSubData(ray_buffer_.id(), 0, GLsizeiptr(bytes.size()), bytes.data());
 
     glPushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, 0, -1, "pass");
     glUseProgram(*program);
     pool_.bind(config.reads);
     rays_.bind(OVC_BINDING_RAYS, config.reads);
+    if (config.compute)
+        glBindImageTexture(OVC_BINDING_NAMES, ray_words_.id(), 0, GL_FALSE, 0, GL_WRITE_ONLY,
+                           GL_R32UI);
     if (has_portals())
         portals_.bind(OVC_BINDING_PORTALS, config.reads);
     if (config.tell_active)
@@ -391,11 +396,38 @@ void Tracer::read(Answers& answers) {
         words_->read(answers, sent_->slots());
     else
         pixels_->read(answers, sent_->size());
+    answers.times = options_.certify ? std::span<const LocalTime>() : sent_->times();
+    if (words_)
+        read_lists(answers);
     for (const auto& [ray, slot] : sent_->parted())
         answers.move(ray, slot);
-    answers.times = options_.certify ? std::span<const LocalTime>() : sent_->times();
     if (!device_.is_software)
         kernel_seconds_ += time_.seconds();
+}
+
+/// Reads the places of rays with names in them: whole blocks, as many as follow each other.
+void Tracer::read_lists(Answers& answers) const {
+    const size_t slots = sent_->slots();
+    const size_t ray_bytes = sent_->bytes().size() / whole_blocks(slots);
+    answers.ray_texels = ray_bytes / sizeof(uvec4);
+    const auto has_lists = [&](size_t first) {
+        for (size_t i = first; i < std::min(first + kBlockRays, slots); ++i)
+            if (answers.is_listed(i))
+                return true;
+        return false;
+    };
+    for (size_t first = 0; first < slots; first += kBlockRays) {
+        size_t last = first;
+        while (last < slots && has_lists(last))
+            last += kBlockRays;
+        if (last == first)
+            continue;
+        answers.lists.resize(std::max(answers.lists.size(), last * answers.ray_texels));
+        glGetNamedBufferSubData(ray_buffer_.id(), GLintptr(first * ray_bytes),
+                                GLsizeiptr((last - first) * ray_bytes),
+                                &answers.lists[first * answers.ray_texels]);
+        first = last;
+    }
 }
 
 /// Whether the kernel gave up many rays, which matters because doubles decide a ray slower than a

@@ -155,6 +155,7 @@ private:
     uint32_t stack_words(const KernelVariant& variant) const;
     Result<Done> launch();
     void read(Answers& answers);
+    void read_lists(Answers& answers) const;
     bool lost_many(const Answers& answers) const;
     bool go_on_longer();
     void say_where(uint32_t leaf);
@@ -183,6 +184,7 @@ private:
     bool packets_ = false;     // the kernel takes rays two at a time
     gl::Buffer ray_buffer_;
     gl::BufferTexture rays_;
+    gl::BufferTexture ray_words_;        // the same, for the kernel to write names
     std::optional<AnswerPixels> pixels_; // of the fragment kernel
     std::optional<AnswerWords> words_;   // of the compute kernel
     std::optional<gl::Buffer> portal_buffer_;
