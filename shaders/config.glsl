@@ -12,6 +12,12 @@
 #ifndef OVC_CERTIFY
 #define OVC_CERTIFY 1
 #endif
+// How many candidates an answer may name besides the certain hit: 2, or OVC_MAX_NAMES. Each beyond
+// two is a register and takes 1/3 % of a nearest ray's time on llvmpipe; a ray with more than can
+// be named is traced again on the CPU, which takes five times as long as the kernel.
+#ifndef OVC_NAMES
+#define OVC_NAMES 2
+#endif
 // 1: the top-level tree leads to parts in frames of their own, and rays come in doubles.
 #ifndef OVC_PORTALS
 #define OVC_PORTALS 0
@@ -72,20 +78,26 @@
 #define OVC_DEAL_GROUPS 1
 #endif
 // How pages, portals and rays are read. 0: by texelFetch; 1: by imageLoad (inlined on llvmpipe, 5 %
-// faster); 2: from storage buffers. OVC_TEXELS declares such texels under a name of their own.
+// faster); 2: from storage buffers. OVC_TEXELS declares such texels under a name of their own,
+// OVC_SHARED_TEXELS those that the kernel may write to under another.
 #ifndef OVC_READS
 #define OVC_READS 1
 #endif
 #if OVC_READS == 2
 #define OVC_TEXELS(number, block) \
     layout(std430, binding = number) readonly restrict buffer block { uvec4 words[]; }
+#define OVC_SHARED_TEXELS(number, block) \
+    layout(std430, binding = number) readonly buffer block { uvec4 words[]; }
 #define OVC_TEXEL(texels, i) texels.words[i]
 #elif OVC_READS == 1
 #define OVC_TEXELS(number, block) \
     layout(rgba32ui, binding = number) uniform readonly restrict uimageBuffer
+#define OVC_SHARED_TEXELS(number, block) \
+    layout(rgba32ui, binding = number) uniform readonly uimageBuffer
 #define OVC_TEXEL(texels, i) imageLoad(texels, i)
 #else
 #define OVC_TEXELS(number, block) layout(binding = number) uniform usamplerBuffer
+#define OVC_SHARED_TEXELS OVC_TEXELS
 #define OVC_TEXEL(texels, i) texelFetch(texels, i)
 #endif
 // Invocations in a work group of the compute kernel: OVC_MAX_GROUP_SIZE or a part of it.

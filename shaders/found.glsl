@@ -5,23 +5,25 @@
 const float OVC_NEVER = 3.0e38;
 
 // A certain hit in [best_lo, best_hi], and the further candidates: triangles that may be hit, but
-// not certainly farther than the best. The last two are named; of all together it is known where
-// they may be hit.
+// not certainly farther than the best. The last OVC_NAMES are named, the last one first; of all
+// together it is known where they may be hit.
 struct Found {
     float best_lo;
     float best_hi;
     uint prim;
     float further_lo;
     float further_hi;
-    uint further[2];
+    uint further[OVC_NAMES];
     int count; // of the further candidates
     vec2 weights; // fast precision: of the pair's corners except v0; `order` makes u and v of them
     uint order;
 };
 
 Found nothing_found(float t_end) {
-    return Found(OVC_NEVER, t_end, OVC_MISS, OVC_NEVER, -OVC_NEVER,
-                 uint[2](OVC_NO_TRIANGLE, OVC_NO_TRIANGLE), 0, vec2(0.0), 8u);
+    uint nobody[OVC_NAMES];
+    for (int i = 0; i < OVC_NAMES; ++i)
+        nobody[i] = OVC_NO_TRIANGLE;
+    return Found(OVC_NEVER, t_end, OVC_MISS, OVC_NEVER, -OVC_NEVER, nobody, 0, vec2(0.0), 8u);
 }
 
 bool has_hit(Found found) { return found.prim != OVC_MISS; }
@@ -29,7 +31,8 @@ bool has_hit(Found found) { return found.prim != OVC_MISS; }
 void add_further(inout Found found, bool valid, float lo, float hi, uint prim) {
     found.further_lo = lesser(valid ? lo : OVC_NEVER, found.further_lo);
     found.further_hi = greater(valid ? hi : -OVC_NEVER, found.further_hi);
-    found.further[1] = valid ? found.further[0] : found.further[1];
+    for (int i = OVC_NAMES - 1; i > 0; --i)
+        found.further[i] = valid ? found.further[i - 1] : found.further[i];
     found.further[0] = valid ? prim : found.further[0];
     found.count += valid ? 1 : 0;
 }
@@ -103,21 +106,28 @@ float end_of_candidates(Found found) {
     return OVC_PORTALS != 0 && !has_hit(found) ? 0.5 * OVC_NEVER : found.best_hi;
 }
 
+bool do_candidates_count(Found found) { return found.further_lo <= end_of_candidates(found); }
+
 // Returns whether so many candidates count that none can be named.
-bool are_too_many(Found found) {
-    return found.count > 2 && found.further_lo <= end_of_candidates(found);
-}
+bool are_too_many(Found found) { return found.count > OVC_NAMES && do_candidates_count(found); }
+
+#if OVC_NAMES > 2
+// Returns whether more candidates count than the words of an answer can name.
+bool are_listed(Found found) { return found.count > 2 && do_candidates_count(found); }
+#endif
 
 // Returns a t before which the ray certainly hits nothing.
 float first_t(Found found) { return lesser(found.best_lo, found.further_lo); }
 
 // Ends a ray with two further candidates behind them, because most such rays pass a side that both
-// share, and hit one of them. Doubles trace the others on.
+// share, or a corner, and hit one of the triangles there. Doubles trace the others on. The end is
+// farther behind the candidates than they are deep, so that it lies behind the others at a corner.
 void end_behind_candidates(inout Found found, bool any_hit) {
-    bool ends = OVC_CERTIFY != 0 && !any_hit && found.count > 1 &&
-                found.further_hi < lesser(found.best_lo, found.best_hi);
+    float end = lesser(found.best_lo, found.best_hi);
+    bool ends = OVC_CERTIFY != 0 && !any_hit && found.count > 1 && found.further_hi < end;
+    float behind = found.further_hi + 3.0 * (found.further_hi - found.further_lo);
     found.best_lo = ends ? OVC_NEVER : found.best_lo;
-    found.best_hi = ends ? found.further_hi : found.best_hi;
+    found.best_hi = ends ? lesser(behind, end) : found.best_hi;
     found.prim = ends ? OVC_ENDED : found.prim;
 }
 
@@ -125,7 +135,7 @@ void end_behind_candidates(inout Found found, bool any_hit) {
 uvec4 answer_of(Found found, bool any_hit, uint leaf) {
     if (OVC_CERTIFY == 0 || (any_hit && found.prim != OVC_MISS))
         return uvec4(OVC_NO_TRIANGLE, OVC_NO_TRIANGLE, leaf, found.prim);
-    bool counts = found.further_lo <= end_of_candidates(found);
+    bool counts = do_candidates_count(found);
     uint first = counts && found.count > 0 ? found.further[0] : OVC_NO_TRIANGLE;
     uint second = counts && found.count > 1 ? found.further[1] : OVC_NO_TRIANGLE;
 #if OVC_PORTALS

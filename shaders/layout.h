@@ -106,13 +106,19 @@
 //                 cannot tell
 //   OVC_CAPPED    a loop was ended before it was done, or the stack was full
 // x, y: up to two more candidates, which may be hit nearer than w, or OVC_NO_TRIANGLE. A triangle
-// that is named neither in w nor here is certainly not the answer.
-// In fast precision x: t of the hit in the tree's frame (float bits); y: u and v in 16 bits each.
+// that is named neither in w nor here is certainly not the answer. Where there are more of them, up
+// to OVC_MAX_NAMES, the compute kernel names them all where the ray was, in its first two texels;
+// x: OVC_LISTED; y: the number of that ray in the pass, and in the lowest OVC_LIST_BITS their
+// number. In fast precision x: t of the hit in the tree's frame (float bits); y: u and v in 16 bits
+// each.
 #define OVC_NO_LEAF 0x7fffffffu
 #define OVC_MISS 0x7fffffffu
 #define OVC_FLAGGED 0x7ffffffeu
 #define OVC_CAPPED 0x7ffffffdu
 #define OVC_ENDED 0x7ffffffcu
+#define OVC_LISTED 0x7ffffffbu
+#define OVC_MAX_NAMES 8
+#define OVC_LIST_BITS 4
 #define OVC_MAX_TRIANGLES 0x7ffffff0u
 // The compute kernel writes its answers to a buffer in four planes, w x y z, one word a ray, in the
 // order of the rays. It does not write a miss without candidates, because the host has put OVC_MISS
@@ -123,6 +129,7 @@
 #define OVC_LOCATION_PLANE 0 // of the uniform with the number of words in a plane
 #define OVC_LOCATION_RAYS 2  // of the uniform with the number of rays in the pass
 
+#define OVC_BINDING_NAMES 0 // the rays once more, to write names in their places
 #define OVC_BINDING_RAYS 1
 #define OVC_BINDING_ANSWERS 2
 #define OVC_BINDING_PORTALS 3

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The rays of a pass (layout.h), and the pixels of their answers.
 
-OVC_TEXELS(OVC_BINDING_RAYS, RayTexels) rays;
+OVC_SHARED_TEXELS(OVC_BINDING_RAYS, RayTexels) rays;
 uvec4 ray_texel(int i) { return OVC_TEXEL(rays, i); }
 
 // Returns the number of the ray whose answer goes to `pixel`.

@@ -3,6 +3,9 @@
 // refill.
 #version 450 core
 #include "layout.h"
+#if OVC_CERTIFY && !OVC_ANY_HIT
+#define OVC_NAMES OVC_MAX_NAMES
+#endif
 #include "config.glsl"
 #if OVC_REFILL
 #extension GL_ARB_gpu_shader_int64 : require // ballotARB() returns a 64-bit integer
@@ -55,6 +58,46 @@ void give(int ray, uvec4 answer) {
             imageStore(answers, 3 * plane + ray, uvec4(answer.z));
     }
 }
+
+#if OVC_NAMES > 2
+layout(r32ui, binding = OVC_BINDING_NAMES) uniform writeonly uimageBuffer names;
+
+int names_of(int ray) {
+#if OVC_PORTALS
+    return ray * 4 * OVC_RAY_TEXELS;
+#elif OVC_MAY_WAIT
+    return ray * 4 * OVC_RESUMED_RAY_TEXELS;
+#else
+    return ray * 4 * OVC_LOCAL_RAY_TEXELS;
+#endif
+}
+
+// One loop for both rays of a packet, of which most lanes store nothing: llvmpipe goes through 16
+// lanes for each store, whether any has something to store or not, and through a loop once.
+void give_names(int first, Found found[OVC_PACKET], int counts[OVC_PACKET]) {
+    const int last = OVC_PACKET - 1;
+    bool at_last = OVC_PACKET == 1 || counts[0] == 0;
+    int left = at_last ? counts[last] : counts[0];
+    int to = names_of(at_last ? first + last : first);
+    uint coming[OVC_NAMES];
+    for (int i = 0; i < OVC_NAMES; ++i)
+        coming[i] = at_last ? found[last].further[i] : found[0].further[i];
+    do {
+        if (left > 0)
+            imageStore(names, to, uvec4(coming[0]));
+        --left;
+        ++to;
+        bool turns = left == 0 && !at_last;
+        for (int i = 0; i < OVC_NAMES; ++i) {
+            uint next = i + 1 < OVC_NAMES ? coming[i + 1] : OVC_NO_TRIANGLE;
+            coming[i] = turns ? found[last].further[i] : next;
+        }
+        left = turns ? counts[last] : left;
+        to = turns ? names_of(first + last) : to;
+        at_last = at_last || turns;
+    } while (left > 0);
+}
+#endif
 
 void main() {
     int group = int(dealt_group());

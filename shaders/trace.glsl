@@ -3,6 +3,10 @@
 
 // Writes the words of an answer. The wrapper, trace.frag.glsl or trace.comp.glsl, defines it.
 void give(int ray, uvec4 answer);
+#if OVC_NAMES > 2
+// Writes the names of so many candidates of each ray to where it was.
+void give_names(int first, Found found[OVC_PACKET], int counts[OVC_PACKET]);
+#endif
 
 #if OVC_PORTALS
 // Takes the ray `ray` in the frame of the top-level tree. Returns whether there is a ray that can
@@ -82,6 +86,9 @@ float begin_of(Found found, Place place) {
 // ended: not lost on the way; whole: nor given up as hopeless.
 void give_answers(int first, Packet packet, Found found[OVC_PACKET], bool ended, bool whole,
                   int rounds) {
+#if OVC_NAMES > 2
+    int counts[OVC_PACKET];
+#endif
     for (int k = 0; k < OVC_PACKET; ++k) {
         uvec4 answer = answer_of(found[k], packet.any_hit[k], OVC_NO_LEAF);
 #if OVC_MAY_WAIT
@@ -105,12 +112,22 @@ void give_answers(int first, Packet packet, Found found[OVC_PACKET], bool ended,
             answer.x = 0u;
             answer.y = floatBitsToUint(tells ? begin_of(found[k], packet.place) : OVC_ANYWHERE);
         }
+#if OVC_NAMES > 2
+        bool listed = ended && answer.w != OVC_FLAGGED && answer.x != OVC_NO_TRIANGLE &&
+                      are_listed(found[k]);
+        counts[k] = listed ? found[k].count : 0;
+        answer.x = listed ? OVC_LISTED : answer.x;
+        answer.y = listed ? uint((first + k) << OVC_LIST_BITS | counts[k]) : answer.y;
+#endif
 #if OVC_COUNTS
         answer.x = uint(rounds);
         answer.y = uint(units_fetched);
 #endif
         give(first + k, ended ? answer : uvec4(0u, 0u, OVC_NO_LEAF, OVC_CAPPED));
     }
+#if OVC_NAMES > 2
+    give_names(first, found, counts);
+#endif
 }
 
 // Traces on for at least one round, until all rays have their answers or `rounds` reaches

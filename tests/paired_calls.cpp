@@ -2,7 +2,8 @@
 // paired_calls BEFORE.so AFTER.so SCENE [--rays N] [--repeats N] times calls of two versions of the
 // library on the same rays, by turns, for docs/benchmarks.md. Prints the median and the quartiles
 // of the ratio of each pair, of the seconds from call to return and of the CPU time, which other
-// programs change less. Answers must be the same bits.
+// programs change less. Edges: rays from the camera at corners and points of sides. Answers must be
+// the same bits.
 #include "core/system/stopwatch.h"
 #include "host/scene/scene_source.h"
 #include "host/scene/scene_summary.h"
@@ -115,6 +116,25 @@ std::vector<ovc_ray> bounced_rays(const Box& box, const std::vector<ovc_ray>& fi
     return rays;
 }
 
+/// Returns rays that leave as those of `first` do, each to a corner of the triangle that its hit
+/// names, or as often to a point between two of them.
+std::vector<ovc_ray> edge_rays(const Soup& soup, const std::vector<ovc_ray>& first,
+                               const std::vector<ovc_hit>& hits) {
+    Random random(1);
+    std::vector<ovc_ray> rays;
+    for (size_t i = 0; i < first.size(); ++i) {
+        if (hits[i].mesh == OVC_NONE)
+            continue;
+        const Triangle triangle = soup.triangle({hits[i].mesh, hits[i].prim});
+        const uint32_t corner = random.below(3);
+        const double along = random.chance(0.5) ? 0 : random.uniform();
+        const dvec3 org(first[i].org[0], first[i].org[1], first[i].org[2]);
+        rays.push_back(
+            ray_from(org, glm::mix(triangle[corner], triangle[(corner + 1) % 3], along) - org));
+    }
+    return rays;
+}
+
 /// What a call took.
 struct Cost {
     double seconds = 0, cpu_seconds = 0;
@@ -126,6 +146,11 @@ Cost cost_of(Call&& call) {
     const Stopwatch watch;
     call();
     return {watch.seconds(), double(std::clock() - cpu) / CLOCKS_PER_SEC};
+}
+
+double median(std::vector<double> values) {
+    std::ranges::sort(values);
+    return values[(values.size() - 1) / 2];
 }
 
 std::string spread(std::vector<double> ratios) {
@@ -149,8 +174,11 @@ Result<Done> run(const char* before, const char* after, const std::string& name,
     sides[0].intersect(primary, hits[0]);
     const std::vector<ovc_ray> bounced = bounced_rays(box, primary, hits[0]);
 
-    const auto compare = [&](const char* what, auto&& call, const auto& answers) {
+    const std::vector<ovc_ray> edges = edge_rays(scene->soup, primary, hits[0]);
+
+    const auto compare = [&](const char* what, size_t rays, auto&& call, const auto& answers) {
         std::vector<double> ratios, cpu_ratios;
+        std::array<std::vector<double>, 2> cpu;
         for (int i = 0; i < repeats + 2; ++i) {
             std::array<Cost, 2> costs;
             for (const size_t side : {size_t(i) % 2, 1 - size_t(i) % 2})
@@ -159,8 +187,11 @@ Result<Done> run(const char* before, const char* after, const std::string& name,
                 continue;
             ratios.push_back(costs[1].seconds / costs[0].seconds);
             cpu_ratios.push_back(costs[1].cpu_seconds / costs[0].cpu_seconds);
+            for (const size_t side : {0, 1})
+                cpu[side].push_back(costs[side].cpu_seconds / double(rays) * 1e9);
         }
-        fmt::print("{:10} {}, CPU {}\n", what, spread(ratios), spread(cpu_ratios));
+        fmt::print("{:10} {}, CPU {}; {:.0f} and {:.0f} ns of CPU time a ray\n", what,
+                   spread(ratios), spread(cpu_ratios), median(cpu[0]), median(cpu[1]));
         if (std::memcmp(answers[0].data(), answers[1].data(),
                         answers[0].size() * sizeof(answers[0][0])) != 0)
             fmt::print("{:10} other answers\n", what);
@@ -168,11 +199,14 @@ Result<Done> run(const char* before, const char* after, const std::string& name,
     fmt::print("{}, {} rays: the time of {} to that of {}, by turns; median (quartiles) of {}\n",
                name, count, after, before, repeats);
     compare(
-        "primary", [&](size_t s) { sides[s].intersect(primary, hits[s]); }, hits);
+        "primary", count, [&](size_t s) { sides[s].intersect(primary, hits[s]); }, hits);
     compare(
-        "diffuse", [&](size_t s) { sides[s].intersect(bounced, hits[s]); }, hits);
+        "diffuse", count, [&](size_t s) { sides[s].intersect(bounced, hits[s]); }, hits);
     compare(
-        "occlusion", [&](size_t s) { sides[s].occluded(bounced, occluded[s]); }, occluded);
+        "occlusion", count, [&](size_t s) { sides[s].occluded(bounced, occluded[s]); }, occluded);
+    if (!edges.empty())
+        compare(
+            "edges", edges.size(), [&](size_t s) { sides[s].intersect(edges, hits[s]); }, hits);
     return Done{};
 }
 

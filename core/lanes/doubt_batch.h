@@ -32,7 +32,10 @@ public:
         batch_.finish(
             [&](const MeetingLanes& lanes, int count) { solve(lanes, count, solutions_); },
             [&](const MeetingLanes& lanes, int lane, const Entry& entry) {
-                answered(refined_candidate(solutions_.at(lane), entry.t_min, entry.t_max, entry.id),
+                answered(solutions_.missed[lane]
+                             ? RefinedAnswer{true, std::nullopt}
+                             : refined_candidate(solutions_.at(lane), entry.t_min, entry.t_max,
+                                                 entry.id),
                          lanes.triangle(lane), entry.id, entry.tag);
             });
     }

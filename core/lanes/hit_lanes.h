@@ -52,6 +52,8 @@ struct SolutionLanes {
     using Number = double[3][kCount]; // the two parts of the number, and a bound of its error
 
     alignas(64) Number det, u, v, t;
+    /// True (-1) where two of u, v and w certainly have different signs: no hit.
+    alignas(64) long long missed[kCount];
 
     BoundedSolution<double> at(int lane) const {
         const auto value = [&](const Number& n) { return DoubleDouble{n[0][lane], n[1][lane]}; };

@@ -74,6 +74,15 @@ OVC_INLINE void solve_by(const MeetingLanes& lanes, int count, SolutionLanes& so
         store(solutions.u, lane, s.value.u, s.error.u);
         store(solutions.v, lane, s.value.v, s.error.v);
         store(solutions.t, lane, s.value.t, s.error.t);
+        const DoubleDoubleOf<V> w = s.w();
+        const V w_error = s.w_error();
+        const auto positive =
+            (w.hi > w_error) | (s.value.u.hi > s.error.u) | (s.value.v.hi > s.error.v);
+        const auto negative =
+            (w.hi < -w_error) | (s.value.u.hi < -s.error.u) | (s.value.v.hi < -s.error.v);
+        const auto missed = positive & negative;
+        static_assert(sizeof(missed) == sizeof(V));
+        __builtin_memcpy(solutions.missed + lane, &missed, sizeof(V));
     }
 }
 

@@ -9,12 +9,14 @@
 
 #include <algorithm>
 #include <array>
+#include <list>
 #include <optional>
 
 namespace ovc {
 
 static bool operator==(const Answer& a, const Answer& b) {
-    return a.words == b.words && a.prim == b.prim && a.where == b.where;
+    return a.words == b.words && a.prim == b.prim && a.where == b.where &&
+           std::ranges::equal(a.listed, b.listed);
 }
 
 namespace {
@@ -58,7 +60,7 @@ protected:
         std::vector<Tracer::Pass> passes;
         tracer.bring(tracer.missing());
         const auto collect = [&](size_t i) {
-            Answers all;
+            Answers& all = collected.emplace_back();
             EXPECT_TRUE(tracer.collect(passes[i], all));
             for (size_t ray = 0; ray < kRays; ++ray)
                 answers[i][ray] = all[ray];
@@ -102,6 +104,7 @@ protected:
         });
     }
 
+    std::list<Answers> collected; // to which answers refer
     const Soup soup = test::closed_grid(40);
     const Numbering numbers{soup};
     Box bounds;

@@ -25,9 +25,15 @@ struct Answer {
     uint32_t prim;
     /// The key of the link that the ray waits for; OVC_NO_LEAF if it waits for none.
     uint32_t where;
+    /// Certified precision: the further candidates where there are more than two, or none.
+    std::span<const uint32_t> listed{};
 
-    /// Certified precision: triangles that may be the answer as well, or OVC_NO_TRIANGLE.
-    std::span<const uint32_t, 2> further() const { return std::span(words).first<2>(); }
+    /// Certified precision, not OVC_FLAGGED: triangles that may be the answer as well, two or more;
+    /// OVC_NO_TRIANGLE in the place of those that there are not.
+    std::span<const uint32_t> further() const {
+        return listed.empty() ? std::span(words).first(2) : listed;
+    }
+    bool has_further() const { return words[0] != OVC_NO_TRIANGLE; }
     /// Certified precision, OVC_FLAGGED: a t in the tree's frame, before which nothing is hit.
     float first_t() const { return std::bit_cast<float>(words[1]); }
     /// Fast precision: the ray's t at the hit.
@@ -42,6 +48,8 @@ struct Answer {
 struct Answers {
     std::vector<uint32_t> names;               // prim, with OVC_SAYS_MORE where `more` counts
     std::array<std::vector<uint32_t>, 3> more; // x, y, z
+    std::vector<uvec4> lists;                  // the rays, as far as any have names in their places
+    size_t ray_texels = 0;                     // of one of them
     std::span<const LocalTime> times;          // fast precision: of each ray; not owned
 
     Answer operator[](size_t i) const {
@@ -51,7 +59,13 @@ struct Answers {
         Answer answer{{more[0][i], more[1][i], more[2][i]}, prim, more[2][i]};
         if (!times.empty() && prim < OVC_MAX_TRIANGLES)
             come_back(answer, times[i]);
+        else if (is_listed(i))
+            answer.listed = list_at(answer.words[1]);
         return answer;
+    }
+    /// Whether the answer's candidates are named in the place of a ray.
+    bool is_listed(size_t i) const {
+        return (names[i] & OVC_SAYS_MORE) && more[0][i] == OVC_LISTED && times.empty();
     }
     /// Gives ray i the answer of slot `from`.
     void move(size_t i, size_t from) {
@@ -62,6 +76,9 @@ struct Answers {
     }
 
 private:
+    std::span<const uint32_t> list_at(uint32_t word) const {
+        return {&lists[(word >> OVC_LIST_BITS) * ray_texels].x, word & ((1u << OVC_LIST_BITS) - 1)};
+    }
     /// Converts a hit of fast precision to the form of Answer. The kernel gives t in the frame of
     /// the top-level tree, then u and v.
     static void come_back(Answer& answer, const LocalTime& time) {

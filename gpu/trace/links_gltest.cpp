@@ -66,10 +66,13 @@ protected:
         const auto offer = [&](TriangleId id) { nearest.offer(soup.triangle(id), id); };
         if (way.hit.is_hit())
             offer(way.hit.id);
+        const auto offer_number = [&](uint32_t number) {
+            if (number < OVC_MAX_TRIANGLES)
+                offer(numbers.id(number));
+        };
+        offer_number(answer.prim);
         if (answer.prim != OVC_FLAGGED)
-            for (const uint32_t number : {answer.prim, answer.words[0], answer.words[1]})
-                if (number < OVC_MAX_TRIANGLES)
-                    offer(numbers.id(number));
+            std::ranges::for_each(answer.further(), offer_number);
         way.hit = nearest.hit();
         way.limit = nearest.limit();
     }

@@ -28,6 +28,7 @@ struct PassSlot {
     const uint32_t max_slots; // the same with those that packets part
     gl::Buffer ray_buffer;
     gl::BufferTexture rays;
+    gl::BufferTexture ray_words;        // the same, for the kernel to write names
     std::optional<AnswerPixels> pixels; // of the fragment kernel
     std::optional<AnswerWords> words;   // of the compute kernel
     gl::TimeQuery time;

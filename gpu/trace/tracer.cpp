@@ -96,7 +96,8 @@ Tracer::Tracer(std::unique_ptr<Ledger> ledger, const MemoryPlan& plan, const Pas
       stack_depth_(stack_depth(top.depth)),
       uploads_(device.passes_in_flight > 1, plan.pool_bytes + plan.ray_bytes()),
       pool_(*ledger_, uploads_, plan.pool(), pages.size(), top.room()) {
-    const KernelVariant variant = options.variants[RayKind{.frames = RayKind::frames_of(top.portals.size())}];
+    const KernelVariant variant =
+        options.variants[RayKind{.frames = RayKind::frames_of(top.portals.size())}];
     for (uint32_t i = 0; i < plan.passes; ++i)
         slots_.emplace_back(*ledger_, plan.batch_rays, plan.parted_rays())
             .make_answers(*ledger_, variant.compute, device_.passes_in_flight > 1);
@@ -121,8 +122,10 @@ Result<Done> Tracer::set_up() {
         return allocated;
     if (portal_buffer_)
         portals_.show(*portal_buffer_, GL_RGBA32UI, 0, portal_buffer_->bytes());
-    for (PassSlot& slot : slots_)
+    for (PassSlot& slot : slots_) {
         slot.rays.show(slot.ray_buffer, GL_RGBA32UI, 0, slot.ray_buffer.bytes());
+        slot.ray_words.show(slot.ray_buffer, GL_R32UI, 0, slot.ray_buffer.bytes());
+    }
     pool_.show();
     upload_top_level();
     if (active_buffer_) {
@@ -329,7 +332,6 @@ Result<Tracer::Pass> Tracer::submit(SentRays& rays) {
     slot.packets = packs(slot.kind, slot.variant) && rays.part(slot.max_slots);
     slot.kernel_seconds = 0;
     slot.sent = &rays;
-    uploads_.copy(rays.bytes(), slot.ray_buffer);
     slot.make_answers(*ledger_, slot.variant.compute, device_.passes_in_flight > 1);
     Result<Done> done = check_answers(slot);
     if (done)
@@ -346,11 +348,16 @@ Result<Done> Tracer::launch(PassSlot& slot) {
     const Result<GLuint> program = kernels_.program(config);
     if (!program)
         return program.error();
+    // Each time, because a kernel may write names in the places of rays.
+    uploads_.copy(slot.sent->bytes(), slot.ray_buffer);
 
     glPushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, 0, -1, "pass");
     glUseProgram(*program);
     pool_.bind(config.reads);
     slot.rays.bind(OVC_BINDING_RAYS, config.reads);
+    if (config.compute)
+        glBindImageTexture(OVC_BINDING_NAMES, slot.ray_words.id(), 0, GL_FALSE, 0, GL_WRITE_ONLY,
+                           GL_R32UI);
     if (has_portals())
         portals_.bind(OVC_BINDING_PORTALS, config.reads);
     if (config.tell_active)
@@ -398,11 +405,38 @@ void Tracer::read(PassSlot& slot, Answers& answers) {
         slot.words->read(answers, slot.sent->slots());
     else
         slot.pixels->read(answers, slot.sent->size());
+    answers.times = options_.certify ? std::span<const LocalTime>() : slot.sent->times();
+    if (slot.words)
+        read_lists(slot, answers);
     for (const auto& [ray, from] : slot.sent->parted())
         answers.move(ray, from);
-    answers.times = options_.certify ? std::span<const LocalTime>() : slot.sent->times();
     if (!device_.is_software)
         slot.kernel_seconds += slot.time.seconds();
+}
+
+/// Reads the places of rays with names in them: whole blocks, as many as follow each other.
+void Tracer::read_lists(const PassSlot& slot, Answers& answers) {
+    const size_t slots = slot.sent->slots();
+    const size_t ray_bytes = slot.sent->bytes().size() / whole_blocks(slots);
+    answers.ray_texels = ray_bytes / sizeof(uvec4);
+    const auto has_lists = [&](size_t first) {
+        for (size_t i = first; i < std::min(first + kBlockRays, slots); ++i)
+            if (answers.is_listed(i))
+                return true;
+        return false;
+    };
+    for (size_t first = 0; first < slots; first += kBlockRays) {
+        size_t last = first;
+        while (last < slots && has_lists(last))
+            last += kBlockRays;
+        if (last == first)
+            continue;
+        answers.lists.resize(std::max(answers.lists.size(), last * answers.ray_texels));
+        glGetNamedBufferSubData(slot.ray_buffer.id(), GLintptr(first * ray_bytes),
+                                GLsizeiptr((last - first) * ray_bytes),
+                                &answers.lists[first * answers.ray_texels]);
+        first = last;
+    }
 }
 
 /// Whether the kernel gave up many rays, which matters because doubles decide a ray slower than a

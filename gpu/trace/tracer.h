@@ -169,6 +169,7 @@ private:
     Result<Done> launch(PassSlot& slot);
     Result<Done> collect(PassSlot& slot, Answers& answers);
     void read(PassSlot& slot, Answers& answers);
+    static void read_lists(const PassSlot& slot, Answers& answers);
     static bool lost_many(const Answers& answers, size_t rays);
     bool go_on_longer(const KernelVariant& variant);
     void say_where(uint32_t leaf);

@@ -6,6 +6,11 @@
 #include "kdtree/test_soups.h"
 #include "shaders/layout.h"
 
+#include <algorithm>
+#include <list>
+#include <numbers>
+#include <numeric>
+
 namespace ovc {
 namespace {
 
@@ -42,6 +47,7 @@ protected:
         });
     }
 
+    /// The answers refer to the fixture.
     std::vector<Answer> trace(std::span<const Ray> rays, bool any_hit = false) {
         std::vector<RayState> states(rays.size());
         for (size_t i = 0; i < rays.size(); ++i)
@@ -49,9 +55,9 @@ protected:
         std::vector<Answer> answers(rays.size());
         gl->run([&](GlState&) {
             SentRays rays_sent = send(tracer->form(), states);
-            Answers all;
-            const Result<Done> traced = tracer->trace(rays_sent, all);
-            ASSERT_TRUE(traced) << traced.error().message;
+            Answers& all = traced.emplace_back();
+            const Result<Done> done = tracer->trace(rays_sent, all);
+            ASSERT_TRUE(done) << done.error().message;
             for (size_t i = 0; i < answers.size(); ++i)
                 answers[i] = all[i];
             EXPECT_GT(tracer->kernel_seconds(), 0);
@@ -70,6 +76,7 @@ protected:
     static constexpr Ray kNoRay{dvec3(0), 0, dvec3(0, 0, 1), -1};
     bool with_host_pages = true; // if the device takes them
     std::unique_ptr<Tracer> tracer;
+    std::list<Answers> traced;
     Level1 level1;
     Numbering numbers;
     std::vector<Page> pages;
@@ -87,7 +94,7 @@ Ray random_ray(test::Random& random, const Leaf& leaf) {
 }
 
 bool is_certain(const Answer& answer) {
-    return answer.prim != OVC_FLAGGED && answer.further()[0] == OVC_NO_TRIANGLE;
+    return answer.prim != OVC_FLAGGED && !answer.has_further();
 }
 
 /// Checks that every certain answer is what brute force finds.
@@ -226,9 +233,52 @@ TEST_F(KernelGl, FlagsRaysAtSharedEdgesAndVertices) {
         EXPECT_EQ(answer.prim, OVC_FLAGGED);
 }
 
+/// Returns `count` triangles that meet in the corner 0 of each.
+Soup fan(int count) {
+    const auto rim = [&](int i) {
+        const double angle = 2 * std::numbers::pi * (i % count) / count;
+        return vec3(std::cos(angle), std::sin(angle), 0.1 * (i % count % 3));
+    };
+    std::vector<vec3> corners;
+    for (int i = 0; i < count; ++i)
+        for (const vec3& corner : {vec3(0), rim(i), rim(i + 1)})
+            corners.push_back(corner);
+    return test::one_chunk(std::move(corners));
+}
+
+TEST_F(KernelGl, NamesUpToEightTrianglesAtAVertex) {
+    for (const int count : {3, 6, 8, 9}) {
+        SCOPED_TRACE(testing::Message() << count << " triangles");
+        const Soup soup = fan(count);
+        load(soup, {}, /* compute= */ true);
+        // Different directions, so that the rays of a packet name different numbers of triangles.
+        std::vector<Ray> rays;
+        test::Random random(15);
+        for (int i = 0; i < 1000; ++i) {
+            const dvec3 dir = random.point(-1, 1) + dvec3(0, 0, i % 2 ? 3 : -3);
+            const dvec3 off = i % 3 == 0 ? dvec3(0.2, 0.1, 0) : dvec3(0);
+            rays.push_back({off - dir, 0, dir});
+        }
+        const std::vector<Answer> answers = trace(rays);
+        for (size_t i = 0; i < rays.size(); ++i) {
+            if (i % 3 == 0)
+                continue;
+            const Answer& answer = answers[i];
+            ASSERT_EQ(answer.prim == OVC_FLAGGED, count > OVC_MAX_NAMES) << "ray " << i;
+            if (count > OVC_MAX_NAMES)
+                continue;
+            std::vector<uint32_t> names(answer.further().begin(), answer.further().end());
+            std::ranges::sort(names);
+            std::vector<uint32_t> all(static_cast<size_t>(count));
+            std::iota(all.begin(), all.end(), 0u);
+            EXPECT_EQ(names, all) << "ray " << i;
+        }
+    }
+}
+
 TEST_F(KernelGl, TellsWhereTheCandidatesOfAFlaggedRayBegin) {
-    const Soup soup = test::closed_grid(16);
     for (const bool compute : {false, true}) {
+        const Soup soup = compute ? fan(12) : test::closed_grid(16);
         load(soup, {}, compute);
         std::vector<Ray> rays;
         for (const TriangleId id : leaf_of(level1).triangles)

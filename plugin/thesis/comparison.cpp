@@ -167,7 +167,8 @@ private:
                 query_.set(first_ + i, fast_hit(p, answer));
             return true;
         }
-        const Candidates found = candidates(answer);
+        const std::array further{number(answer.further()[0]), number(answer.further()[1])};
+        const Candidates found{number(answer.prim), further};
         if (found.is_miss())
             return true;
         if (Query::kAnyHit && found.is_certain_hit()) {
@@ -182,14 +183,11 @@ private:
         return true;
     }
 
-    /// Returns the candidates by number; the kernels of the thesis name them by index in the leaf.
-    Candidates candidates(const FrameAnswer& answer) const {
-        const auto number = [&](uint32_t index) {
-            return index < c_.whole().triangles.size()
-                       ? c_.scene_.numbers.of(c_.whole().triangles[index])
-                       : index; // OVC_MISS, OVC_NO_TRIANGLE
-        };
-        return {number(answer.prim), {number(answer.further()[0]), number(answer.further()[1])}};
+    /// Returns a candidate's number; the kernels of the thesis name it by its index in the leaf.
+    uint32_t number(uint32_t index) const {
+        return index < c_.whole().triangles.size()
+                   ? c_.scene_.numbers.of(c_.whole().triangles[index])
+                   : index; // OVC_MISS, OVC_NO_TRIANGLE
     }
 
     Hit fast_hit(const PreparedRay& p, const FrameAnswer& answer) const {

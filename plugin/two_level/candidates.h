@@ -10,13 +10,14 @@
 #include <array>
 #include <cassert>
 #include <cstddef>
+#include <span>
 
 namespace ovc {
 
 /// Triangles by their numbers in the scene.
 struct Candidates {
-    uint32_t certain;                // the ray hits this one for certain; or OVC_MISS
-    std::array<uint32_t, 2> further; // it may hit these as well; OVC_NO_TRIANGLE stands last
+    uint32_t certain;                  // the ray hits this one for certain; or OVC_MISS
+    std::span<const uint32_t> further; // it may hit these as well; OVC_NO_TRIANGLE stands last
 
     bool has_further() const { return further[0] != OVC_NO_TRIANGLE; }
     bool is_miss() const { return certain == OVC_MISS && !has_further(); }
@@ -42,22 +43,25 @@ struct Candidates {
 template <class Tag>
 class CandidateBatch {
 public:
-    bool has_room() const { return pairs_.room() >= kMaxOfRay; }
+    bool has_room() const { return count_ < asked_.size(); }
 
     /// Adds a ray, which does not see the triangle `skip`, and its candidates. Needs room.
     void add(const Ray& ray, TriangleId skip, const Candidates& found, const BuiltScene& scene,
              const Tag& tag) {
         assert(has_room());
         const auto add = [&](uint32_t number, bool certain) {
+            if (pairs_.room() == 0)
+                test();
             const TriangleId id = scene.seen(number, skip);
             pairs_.add(ray, scene.soup.triangle(id), id, {count_, certain});
         };
+        asked_[count_] = {tag, {}, false};
         if (found.certain != OVC_MISS)
             add(found.certain, true);
         for (const uint32_t number : found.further)
             if (number != OVC_NO_TRIANGLE)
                 add(number, false);
-        asked_[count_++] = {tag, {}, false};
+        ++count_;
     }
 
     /// Empties the batch. Calls decided(nearest, tag) for each ray with the nearest hit of its
@@ -65,9 +69,7 @@ public:
     /// confirm the certain hit.
     template <class Decided, class Unclear>
     void finish(Decided&& decided, Unclear&& unclear) {
-        pairs_.finish([&](const RefinedAnswer& answer, const Triangle&, TriangleId, Pair pair) {
-            asked_[pair.asked].take(answer, pair.certain);
-        });
+        test();
         for (size_t i = 0; i < count_; ++i)
             if (asked_[i].is_unclear)
                 unclear(asked_[i].tag);
@@ -77,8 +79,6 @@ public:
     }
 
 private:
-    static constexpr int kMaxOfRay = 3;
-
     struct Asked {
         Tag tag;
         Candidate nearest;
@@ -99,8 +99,14 @@ private:
         bool certain;
     };
 
+    void test() {
+        pairs_.finish([&](const RefinedAnswer& answer, const Triangle&, TriangleId, Pair pair) {
+            asked_[pair.asked].take(answer, pair.certain);
+        });
+    }
+
     DoubtBatch<Pair> pairs_;
-    std::array<Asked, MeetingLanes::kCount> asked_{};
+    std::array<Asked, 16> asked_{};
     size_t count_ = 0;
 };
 

@@ -41,7 +41,7 @@ inline bool names_candidates(const Answer& answer) {
 /// Returns the candidates of an answer that names them.
 inline Candidates candidates_of(const Answer& answer) {
     const uint32_t certain = answer.prim == OVC_ENDED ? OVC_MISS : answer.prim;
-    return {certain, {answer.further()[0], answer.further()[1]}};
+    return {certain, answer.further()};
 }
 
 /// Returns the hit with t, u and v of where the ray meets the triangle's plane, computed in
@@ -259,7 +259,8 @@ private:
         }
         if (!tracing_.options.certify || !names_candidates(answers[j]))
             return;
-        const Candidates found = candidates_of(answers[j]);
+        const Answer answer = answers[j];
+        const Candidates found = candidates_of(answer);
         fetch(found.certain);
         for (const uint32_t number : found.further)
             fetch(number);
@@ -268,13 +269,16 @@ private:
         if (number >= OVC_MAX_TRIANGLES)
             return;
         const TriangleId id = scene_.numbers.id(number);
-        __builtin_prefetch(scene_.soup.chunks[id.mesh].address_of(id.prim));
+        const Chunk& chunk = scene_.soup.chunks[id.mesh];
+        __builtin_prefetch(chunk.address_of(id.prim));
+        if (!chunk.stored_corners()) // a triangle often lies in two lines
+            __builtin_prefetch(static_cast<const char*>(chunk.address_of(id.prim + 1)) - 1);
     }
 
     /// Whether the answer names the nearest hit, and nothing is left to decide but t, u and v.
     bool is_certain_hit(uint32_t i, const Answer& answer) const {
         return !Query::kAnyHit && tracing_.options.certify && answer.prim < OVC_MAX_TRIANGLES &&
-               !candidates_of(answer).has_further() && !was_hit(i);
+               !answer.has_further() && !was_hit(i);
     }
     /// Whether the ray was found to hit something before this answer.
     bool was_hit(uint32_t i) const { return !are_whole_ && query_.was_hit(i); }
@@ -286,9 +290,8 @@ private:
 
     /// Whether the answer names several triangles, and nothing but these decides about the ray.
     bool has_plain_candidates(uint32_t i, const Answer& answer) const {
-        return tracing_.options.certify && names_candidates(answer) &&
-               candidates_of(answer).has_further() && !was_hit(i) &&
-               exclusion(i).after.is_before_all();
+        return tracing_.options.certify && names_candidates(answer) && answer.has_further() &&
+               !was_hit(i) && exclusion(i).after.is_before_all();
     }
 
     /// Returns the t beyond which no hit of the ray can win against this one, or against none.
@@ -367,7 +370,7 @@ private:
             enter_miss(i);
         if (answer.where != OVC_NO_LEAF && !(Query::kAnyHit && hit))
             go_on(i, answer.where, limit);
-        if (candidates_of(answer).has_further()) // fall_back() counts the others
+        if (answer.has_further()) // fall_back() counts the others
             count_flagged(i);
     }
 

@@ -167,7 +167,8 @@ void QueuedRays::resolve(QueuedRay& state, const FrameAnswer& answer, bool decid
 /// Enters the kernel's candidates of the leaf, as exact arithmetic decides them. Returns false
 /// where it does not confirm the certain hit.
 bool QueuedRays::resolve_candidates(QueuedRay& state, const FrameAnswer& answer) {
-    const Candidates found{answer.prim, answer.further()};
+    const std::array<uint32_t, 2> further = answer.further();
+    const Candidates found{answer.prim, further};
     if (found.is_miss())
         return true;
     if (state.any_hit && found.is_certain_hit()) {
