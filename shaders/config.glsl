@@ -12,12 +12,6 @@
 #ifndef OVC_CERTIFY
 #define OVC_CERTIFY 1
 #endif
-// How many candidates an answer may name besides the certain hit: 2, or OVC_MAX_NAMES. Each beyond
-// two is a register and takes 1/3 % of a nearest ray's time on llvmpipe; a ray with more than can
-// be named is traced again on the CPU, which takes five times as long as the kernel.
-#ifndef OVC_NAMES
-#define OVC_NAMES 2
-#endif
 // 1: the top-level tree leads to parts in frames of their own, and rays come in doubles.
 #ifndef OVC_PORTALS
 #define OVC_PORTALS 0

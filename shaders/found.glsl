@@ -85,12 +85,15 @@ vec2 barycentric(Found found) {
 }
 
 #if OVC_PORTALS
-// Returns the same in another frame, rounded outwards. t_end: the ray's end there.
+// Returns the same in another frame, rounded outwards. t_end: the ray's end there. The end of a ray
+// behind its candidates is rounded inwards, for nobody has looked behind it in the frame before.
 Found in_times(Found found, Times from, Times to, float t_end) {
     bool hit = has_hit(found);
     Found there = found;
     there.best_lo = hit && found.best_lo < OVC_NEVER ? earlier(found.best_lo, from, to) : OVC_NEVER;
     there.best_hi = hit ? later(found.best_hi, from, to) : t_end;
+    if (found.prim == OVC_ENDED)
+        there.best_hi = earlier(found.best_hi, from, to);
     bool counts = found.count > 0 && !(hit && found.further_lo > found.best_hi);
     there.count = counts ? found.count : 0;
     there.further_lo = counts ? earlier(found.further_lo, from, to) : OVC_NEVER;

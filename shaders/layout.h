@@ -119,6 +119,12 @@
 #define OVC_LISTED 0x7ffffffbu
 #define OVC_MAX_NAMES 8
 #define OVC_LIST_BITS 4
+// How many candidates an answer may name besides the certain hit: 2, or OVC_MAX_NAMES. Each beyond
+// two is a register and takes 1/3 % of a nearest ray's time on llvmpipe; a ray with more than can
+// be named is traced again on the CPU, which takes four times as long as the kernel.
+#ifndef OVC_NAMES
+#define OVC_NAMES 2
+#endif
 #define OVC_MAX_TRIANGLES 0x7ffffff0u
 // The compute kernel writes its answers to a buffer in four planes, w x y z, one word a ray, in the
 // order of the rays. It does not write a miss without candidates, because the host has put OVC_MISS

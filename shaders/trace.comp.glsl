@@ -2,10 +2,10 @@
 // The compute kernel: an invocation takes rays of the pass, OVC_PACKET at a time, once or with ray
 // refill.
 #version 450 core
-#include "layout.h"
 #if OVC_CERTIFY && !OVC_ANY_HIT
 #define OVC_NAMES OVC_MAX_NAMES
 #endif
+#include "layout.h"
 #include "config.glsl"
 #if OVC_REFILL
 #extension GL_ARB_gpu_shader_int64 : require // ballotARB() returns a 64-bit integer

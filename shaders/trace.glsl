@@ -83,8 +83,9 @@ float begin_of(Found found, Place place) {
 #endif
 }
 
-// ended: not lost on the way; whole: nor given up as hopeless.
-void give_answers(int first, Packet packet, Found found[OVC_PACKET], bool ended, bool whole,
+// ended: not lost on the way; whole: nor given up as hopeless. Returns whether candidates were named
+// in the places of rays.
+bool give_answers(int first, Packet packet, Found found[OVC_PACKET], bool ended, bool whole,
                   int rounds) {
 #if OVC_NAMES > 2
     int counts[OVC_PACKET];
@@ -125,9 +126,13 @@ void give_answers(int first, Packet packet, Found found[OVC_PACKET], bool ended,
 #endif
         give(first + k, ended ? answer : uvec4(0u, 0u, OVC_NO_LEAF, OVC_CAPPED));
     }
+    bool named = false;
 #if OVC_NAMES > 2
     give_names(first, found, counts);
+    for (int k = 0; k < OVC_PACKET; ++k)
+        named = named || counts[k] > 0;
 #endif
+    return named;
 }
 
 // Traces on for at least one round, until all rays have their answers or `rounds` reaches
@@ -204,14 +209,19 @@ void trace_with_refill(int begin, int end) {
         bool ended = whole || (looks > OVC_PATIENCE / OVC_REFILL_ROUNDS && are_hopeless(found));
         bool ready = ended || enough;
         uint ready_lanes = uint(ballotARB(ready));
+        bool named = false;
         if (ready) {
-            give_answers(ray, packet, found, ended && !d.lost, whole, rounds);
+            named = give_answers(ray, packet, found, ended && !d.lost, whole, rounds);
             ray = next + bitCount(ready_lanes & lanes_before) * OVC_PACKET;
             start(d, tree);
             d.done = !take_rays(ray, tree, packet, found);
             looks = 0;
         }
         next += bitCount(ready_lanes) * OVC_PACKET;
+#if OVC_NAMES > 2
+        // llvmpipe goes through the loop of give_names() once where no lane has any.
+        rounds += uint(ballotARB(named)) != 0u ? OVC_PACKET * OVC_NAMES : 1;
+#endif
     }
 }
 #endif
