@@ -83,8 +83,8 @@ float begin_of(Found found, Place place) {
 #endif
 }
 
-// ended: not lost on the way; whole: nor given up as hopeless. Returns whether candidates were named
-// in the places of rays.
+// ended: not lost on the way; whole: nor given up as hopeless. Returns whether candidates were
+// named in the places of rays.
 bool give_answers(int first, Packet packet, Found found[OVC_PACKET], bool ended, bool whole,
                   int rounds) {
 #if OVC_NAMES > 2
