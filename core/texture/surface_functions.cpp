@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 namespace ovc {
 
@@ -79,6 +80,37 @@ double kummer(Arguments a) {
                         a[5] * (x * y + y * z + z * x) - a[6] * a[0] * a[1] * a[2]);
 }
 
+/// Returns how far off a tube's middle the point (x, y) of its cross-section lies. shape: 0 for a
+/// square, 1 for a circle, 2 for a square on its corner, and what is between them.
+double off_middle(double x, double y, double shape) {
+    x = std::abs(x), y = std::abs(y);
+    if (!(shape > 0))
+        return std::max(x, y);
+    return std::pow(std::pow(x, 2 / shape) + std::pow(y, 2 / shape), shape / 2);
+}
+
+/// Arguments: the point, how many helices, radians of a turn per unit of y, the radius of the tube,
+/// that of the turns, the height of the tube in widths, its cross-section's shape and angle. The
+/// cross-section lies in a plane through the y axis. Far from all turns the axis counts instead.
+double helix_of_tubes(Arguments a) {
+    const double step = 2 * std::numbers::pi / a[3];
+    const double turn = (a[1] * a[4] + std::atan2(a[2], a[0])) / step;
+    const double from_axis = std::hypot(a[0], a[2]), far = from_axis + a[6];
+    const double up = (turn - std::floor(turn) - 0.5) * step / (a[4] * a[7]);
+    if (!std::isfinite(up))
+        return far - a[5];
+    const double angle = a[9] * std::numbers::pi / 180, c = std::cos(angle), s = std::sin(angle);
+    const double out = from_axis - a[6];
+    return std::min(far, off_middle(out * c - up * s, out * s + up * c, a[8])) - a[5];
+}
+
+/// The arguments are those of the other helix. There is one of them, whose cross-section is level
+/// and turns with it; height and angle do not count.
+double level_helix(Arguments a) {
+    const double c = std::cos(a[4] * a[1]), s = std::sin(a[4] * a[1]);
+    return off_middle(a[0] * c + a[2] * s - a[6], a[2] * c - a[0] * s, a[8]) - a[5];
+}
+
 struct SurfaceFunction {
     uint32_t number;
     int count; // of arguments
@@ -101,6 +133,8 @@ constexpr auto kSurfaces = std::to_array<SurfaceFunction>({
          return field(a, 0.5 * std::pow(a[0], 4) * (1 + a[0]) - a[1] * a[1] - a[2] * a[2]);
      }},
     {23, 4, heart},
+    {25, 10, helix_of_tubes}, // helix1
+    {26, 10, level_helix},    // helix2
     {31, 6, hyperbolic_torus},
     {33, 6, // kampyle_of_eudoxus
      [](Arguments a) {
