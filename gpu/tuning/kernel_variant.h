@@ -66,7 +66,9 @@ struct RayKind {
     bool coherent = false; // neighbours go alike (gpu/trace/packets.h)
 
     static constexpr size_t kCount = 12;
-    size_t number() const { return (size_t(frames) << 1 | size_t(any_hit)) << 1 | size_t(coherent); }
+    size_t number() const {
+        return (size_t(frames) << 1 | size_t(any_hit)) << 1 | size_t(coherent);
+    }
     static RayKind of(size_t number) {
         return {(number & 2) != 0, Frames(number >> 2), (number & 1) != 0};
     }

@@ -13,7 +13,7 @@ namespace ovc {
 namespace {
 
 constexpr std::array kScenes{"knot", "far-terrain", "fractal"}; // one frame, few, many
-constexpr uint32_t kSide = 512;                  // pixels
+constexpr uint32_t kSide = 512;                                 // pixels
 
 Result<Done> trace_set(const RaySet& set, Backend& backend) {
     std::vector<Hit> hits(set.rays.size());

@@ -71,7 +71,8 @@ TEST_F(MeasuredVariantsGl, ChangeFramesInPairsOfFloatsToTheSameBits) {
         soup.chunks.push_back(std::move(instance));
     }
     for (const bool compute : {true, false}) {
-        KernelVariant variant = default_variants(gl->info(), compute)[RayKind{.frames = RayKind::Frames::Many}];
+        KernelVariant variant =
+            default_variants(gl->info(), compute)[RayKind{.frames = RayKind::Frames::Many}];
         variant.float_pairs = true;
         for (const bool any_hit : {false, true}) {
             const uint64_t expected = hash({.compute = compute}, any_hit);
