@@ -117,7 +117,9 @@ void Reader::do_declare(bool local) {
     // A macro that gives the value may still run afterwards, and the macro with this directive may
     // have ended, which removes its variables. So the scope is chosen before.
     const uint32_t scope = scope_of(name, local);
+    const Declaring outer = std::exchange(declaring_, {name, scope});
     Value value = hooks_.value(*this);
+    declaring_ = outer;
     if (scope < scopes_.size())
         declare_in(scope, name).value = std::move(value);
     take_semicolon();

@@ -350,7 +350,11 @@ std::pair<Slot*, Value> Reader::argument(size_t scopes) {
         if (after.is(',') || after.is(')')) {
             if (Slot* slot = find(first.name))
                 return {slot, {}};
-            return {&declare(first.name, /* local= */ true), {}};
+            // The macro may stand behind a #declare that has no semicolon, whose variable it takes.
+            const bool is_coming = declaring_.name == first.name;
+            return {&declare_in(is_coming ? declaring_.scope : uint32_t(scopes_.size() - 1),
+                                first.name),
+                    {}};
         }
     }
     put_back(first);

@@ -151,6 +151,7 @@ public:
     bool moves = false;             // the scene has asked for the moment
     Texture defaults;               // of #default
     std::optional<NoiseKind> noise; // noise_generator of global_settings
+    int wave_sources = 10;          // number_of_waves of global_settings
     /// The objects that the scene asked about with trace().
     std::map<ObjectPtr, std::unique_ptr<const TraceTarget>> targets;
     std::map<std::string, std::unique_ptr<Font>> fonts; // by name; shapes point to their letters
@@ -189,6 +190,11 @@ private:
         uint32_t scope;
         std::vector<Condition> open;
         Place called;
+    };
+    /// The variable whose value is being read, and the scope that it will be in.
+    struct Declaring {
+        const Name* name = nullptr;
+        uint32_t scope = 0;
     };
     struct Scope {
         uint64_t serial; // ascending
@@ -276,9 +282,10 @@ private:
     uint64_t changes_ = 0;   // calls of changed()
     uint64_t reads_ = 0;     // #read directives
     Place last_;
-    uint64_t run_over_ = 0;          // words that spend() has counted
-    int64_t brackets_ = 0;           // open ( [ { and vectors; below 0 after a stray ) ] or }
-    std::optional<Depth> obeys_;     // the innermost directive that is being obeyed
+    uint64_t run_over_ = 0;      // words that spend() has counted
+    int64_t brackets_ = 0;       // open ( [ { and vectors; below 0 after a stray ) ] or }
+    std::optional<Depth> obeys_; // the innermost directive that is being obeyed
+    Declaring declaring_;
     std::optional<Depth> condition_; // the innermost condition that is being read
     size_t depth_ = 0;
 };
