@@ -28,8 +28,9 @@ namespace ovc {
 /// pigment is Material::color. Where a pigment lets light through, the importer has dimmed
 /// `ambient` and `diffuse` already.
 struct Finish {
-    vec3 ambient{0};   // x color is sent out in the dark; the scene's ambient light is in it
-    float diffuse = 1; // x color x the light that arrives x cosine ^ brilliance
+    vec3 ambient{0};        // x color is sent out in the dark; the scene's ambient light is in it
+    float diffuse = 1;      // x color x the light that arrives x cosine ^ brilliance
+    float diffuse_back = 0; // the same of light that arrives at the side that is not seen
     float brilliance = 1;
     float phong = 0; // x the light that arrives x (reflected view . light) ^ phong_size
     float phong_size = 40;
@@ -323,6 +324,12 @@ struct Fog {
     double altitude = 0;
     double offset = 0;
     dvec3 up{0, 1, 0}; // unit length
+    /// Unless 0, noise thins the fog: the share `turbulence_depth` of it at
+    /// the middle of a ray's way, whose coordinates are multiplied by this.
+    dvec3 turbulence{0};
+    double turbulence_depth = 0.5;
+    Octaves octaves;
+    NoiseKind noise = NoiseKind::Corrected;
 
     bool operator==(const Fog&) const = default;
 };

@@ -51,7 +51,7 @@ void each_field(auto& io, Some<Finish> auto& f) {
     io(f.ambient, f.diffuse, f.brilliance, f.phong, f.phong_size, f.specular, f.roughness,
        f.metallic, f.reflection, f.grazing_reflection, f.reflection_falloff, f.fresnel,
        f.metallic_reflection, f.conserve_energy, f.irid, f.irid_thickness, f.irid_turbulence,
-       f.irid_wavelengths, f.crand, f.filter_by_brightest);
+       f.irid_wavelengths, f.crand, f.filter_by_brightest, f.diffuse_back);
 }
 
 void each_field(auto& io, Some<TransparentColor> auto& c) {
@@ -160,7 +160,8 @@ void each_field(auto& io, Some<ImageSize> auto& s) {
 }
 
 void each_field(auto& io, Some<Fog> auto& f) {
-    io(f.color, f.distance, f.altitude, f.offset, f.up);
+    io(f.color, f.distance, f.altitude, f.offset, f.up, f.turbulence, f.turbulence_depth, f.octaves,
+       f.noise);
 }
 
 void each_field(auto& io, Some<Rainbow> auto& r) {

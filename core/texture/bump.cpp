@@ -51,12 +51,18 @@ dvec3 against_slope(const Around& around, const Bump& bump) {
                                      {-std::sqrt(2.0) / 3, -1 / 3.0, std::sqrt(2 / 3.0)},
                                      {-std::sqrt(2.0) / 3, -1 / 3.0, -std::sqrt(2 / 3.0)},
                                      {0, 1, 0}};
-    const TexturePoint point = point_of(around, bump);
+    // Warps and turbulence move the place, not its surroundings.
+    const Texture& texture = around.textures[bump.pattern.texture];
+    const bool is_pattern = texture.kind == TextureKind::Pattern && !texture.on_uv;
+    TexturePoint point = point_of(around, bump);
+    if (is_pattern)
+        point.at = moved(texture.pattern, point.at);
     dvec3 sum(0);
     for (const dvec3& corner : kCorners) {
         TexturePoint near = point;
         near.at += bump.accuracy * corner;
-        const double value = value_at(around.textures, bump.pattern.texture, near);
+        const double value = is_pattern ? value_of_moved(around.textures, texture.pattern, near)
+                                        : value_at(around.textures, bump.pattern.texture, near);
         sum -= height_of(bump.profile, value) * corner;
     }
     return 0.1 / bump.accuracy * sum;
@@ -73,7 +79,8 @@ dvec3 wrinkled(const dvec3& at) {
 /// Returns the mean of the slopes of the waves from all sources. kind: Ripples or Waves.
 dvec3 waved(const Pattern& pattern, Bump::Kind kind, const dvec3& at) {
     dvec3 sum(0);
-    for (const WaveSource& source : wave_sources()) {
+    const std::span<const WaveSource> sources = wave_sources(pattern.parameters[0]);
+    for (const WaveSource& source : sources) {
         const double frequency = kind == Bump::Kind::Waves ? source.frequency : 1;
         const dvec3 way = at - source.at;
         const double away = glm::length(way);
@@ -82,7 +89,7 @@ dvec3 waved(const Pattern& pattern, Bump::Kind kind, const dvec3& at) {
         const double turn = away * pattern.frequency * frequency + pattern.phase;
         sum += std::sin(2 * std::numbers::pi * turn) / (frequency * away) * way;
     }
-    return sum / double(kWaveSources);
+    return sum / double(sources.size());
 }
 
 /// Returns the slope of the triangle of the texel and two in the next row, to its left and right.
@@ -170,14 +177,20 @@ dvec3 tilted_normal(const Around& around, const Bump& bump) {
     if (bump.amount == 0)
         return around.normal;
     const PlacedTexture& placed = bump.pattern;
-    // Rows of the map from the world: normals go to the pattern by the inverse of its transpose.
-    const dmat3 rows(dvec3(placed.to_texture[0]), dvec3(placed.to_texture[1]),
-                     dvec3(placed.to_texture[2]));
+    const Pattern& pattern = pattern_of(around, bump);
+    // Rows of the map from the world, with the maps between warps: normals go to the pattern by the
+    // inverse of its transpose.
+    const auto linear = [](const std::array<dvec4, 3>& map) {
+        return dmat3(dvec3(map[0]), dvec3(map[1]), dvec3(map[2]));
+    };
+    dmat3 rows = linear(placed.to_texture);
+    for (const TextureStep& step : pattern.steps)
+        if (step.kind == TextureStep::Kind::Affine)
+            rows = rows * linear(step.rows);
     const dvec3 there = glm::inverse(rows) * around.normal;
     const double length = glm::length(there);
     if (!(length > 0) || !std::isfinite(length))
         return around.normal;
-    const Pattern& pattern = pattern_of(around, bump);
     const dvec3 tilted =
         bump.kind == Bump::Kind::Facets
             ? faceted(pattern, evaluate(around.textures, pattern, point_of(around, bump)).at.at,

@@ -170,6 +170,36 @@ TEST(Bump, TiltsNormalsByThreeTexelsAsPovrayDoes) {
     }
 }
 
+TEST(Bump, LooksAroundThePlaceThatWarpsLeadTo) {
+    // As povray does, whose crackle has one slope in a cell, whatever the turbulence in it.
+    Pattern cracked{.kind = Kind::Crackle, .parameters = {-1, 1, 0, 2, 0, 0}};
+    const Pattern still = cracked;
+    cracked.turbulence = dvec3(0.5);
+    const Bump bump{.amount = 0.5,
+                    .pattern = {0, {dvec4(1, 0, 0, 0), dvec4(0, 1, 0, 0), dvec4(0, 0, 1, 0)}}};
+    for (const dvec3& at : kPlaces) {
+        const std::vector<Texture> there{{still, {{}}}};
+        expect_normal(cracked, bump, at,
+                      bumped(there, {}, bump, moved(cracked, at), {0, 0, -1}, {0, 0, 1}),
+                      "turbulence");
+    }
+}
+
+TEST(Bump, IsStretchedByTheMapsBetweenWarpsAsWell) {
+    const double scale = 1 / 0.7;
+    Bump bump{.amount = 0.8};
+    bump.pattern.to_texture = {dvec4(scale, 0, 0, 0), dvec4(0, scale, 0, 0), dvec4(0, 0, scale, 0)};
+    Bump within = bump;
+    within.pattern.to_texture = {dvec4(1, 0, 0, 0), dvec4(0, 1, 0, 0), dvec4(0, 0, 1, 0)};
+    const Pattern leopard{.kind = Kind::Leopard};
+    Pattern stepped = leopard;
+    stepped.steps = {{TextureStep::Kind::Affine, bump.pattern.to_texture}};
+    const std::vector<Texture> textures{{leopard, {{}}}};
+    for (const dvec3& at : kPlaces)
+        expect_normal(stepped, within, at, bumped(textures, {}, bump, at, {0, 0, -1}, {0, 0, 1}),
+                      "scale");
+}
+
 TEST(Bump, IsStretchedWithItsPattern) {
     // povray's normals of bumps 0.5 scale <0.2, 1, 0.5> rotate 30*z.
     Bump bump{.kind = Bump::Kind::Noise, .amount = 0.5};

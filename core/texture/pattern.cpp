@@ -20,6 +20,10 @@ using Kind = Pattern::Kind;
 /// Patterns are 0 beyond this, where doubles tell no two cells apart.
 constexpr double kFarthestPattern = 1e12;
 
+bool is_in_reach(const dvec3& at) {
+    return is_finite(at) && max_component(glm::abs(at)) <= kFarthestPattern;
+}
+
 /// Returns the value from 0 to 1. POV-Ray wraps just above 1, so that a value of 1 stays.
 double wave_of(const Pattern& pattern, double value) {
     if (pattern.wave == Pattern::Wave::None)
@@ -73,25 +77,35 @@ void move(const TextureStep& step, TexturePoint& point) {
 
 } // namespace
 
+dvec3 moved(const Pattern& pattern, dvec3 at) {
+    for (const TextureStep& step : pattern.steps)
+        at = warped(step, at);
+    if (pattern.turbulence != dvec3(0) && !adds_turbulence(pattern.kind))
+        at += pattern.turbulence * turbulence(at, pattern.octaves);
+    return at;
+}
+
+double value_of_moved(std::span<const Texture> textures, const Pattern& pattern,
+                      const TexturePoint& point) {
+    if (!is_in_reach(point.at))
+        return 0;
+    if (is_discrete(pattern.kind))
+        return discrete_value(pattern, point.at);
+    const double value = wave_of(pattern, continuous_value(textures, pattern, point));
+    return std::isfinite(value) ? value : 0;
+}
+
 PatternPlace evaluate(std::span<const Texture> textures, const Pattern& pattern,
                       const TexturePoint& point) {
     PatternPlace place{0, point};
-    dvec3& at = place.at.at;
-    const bool takes_means = pattern.kind == Kind::Perlin;
-    for (const TextureStep& step : pattern.steps)
-        takes_means ? move(step, place.at) : void(at = warped(step, at));
-    if (pattern.turbulence != dvec3(0) && !adds_turbulence(pattern.kind))
-        at += pattern.turbulence * turbulence(at, pattern.octaves);
-    if (!is_finite(at) || max_component(glm::abs(at)) > kFarthestPattern) {
-        at = dvec3(0);
-        return place;
-    }
-    if (is_discrete(pattern.kind)) {
-        place.value = discrete_value(pattern, at);
-    } else {
-        const double value = wave_of(pattern, continuous_value(textures, pattern, place.at));
-        place.value = std::isfinite(value) ? value : 0;
-    }
+    if (pattern.kind == Kind::Perlin) // which takes means over the sides
+        for (const TextureStep& step : pattern.steps)
+            move(step, place.at);
+    else
+        place.at.at = moved(pattern, point.at);
+    place.value = value_of_moved(textures, pattern, place.at);
+    if (!is_in_reach(place.at.at))
+        place.at.at = dvec3(0);
     return place;
 }
 

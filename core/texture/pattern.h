@@ -19,6 +19,12 @@ struct PatternPlace {
 PatternPlace evaluate(std::span<const Texture> textures, const Pattern& pattern,
                       const TexturePoint& point);
 
+/// The two halves of evaluate(): where the pattern's steps and its turbulence lead, and the value
+/// there. moved() returns a point that is not finite, or very far away, where the value is 0.
+dvec3 moved(const Pattern& pattern, dvec3 at);
+double value_of_moved(std::span<const Texture> textures, const Pattern& pattern,
+                      const TexturePoint& point);
+
 /// Returns the color of textures[number] at a point of its space.
 TransparentColor color_at(std::span<const Texture> textures, uint32_t number,
                           const TexturePoint& point);

@@ -134,18 +134,20 @@ double quilted(const Pattern& pattern, const dvec3& at) {
 /// The crests of the waves that run out from all sources.
 double ripples(const Pattern& pattern, const dvec3& at) {
     double sum = 0;
-    for (const WaveSource& source : wave_sources())
+    const std::span<const WaveSource> sources = wave_sources(pattern.parameters[0]);
+    for (const WaveSource& source : sources)
         sum += cycle(glm::distance(at, source.at) * pattern.frequency + pattern.phase);
-    return 0.5 + 0.5 * sum / kWaveSources;
+    return 0.5 + 0.5 * sum / double(sources.size());
 }
 
 double waves(const Pattern& pattern, const dvec3& at) {
     double sum = 0;
-    for (const WaveSource& source : wave_sources())
+    const std::span<const WaveSource> sources = wave_sources(pattern.parameters[0]);
+    for (const WaveSource& source : sources)
         sum += cycle(glm::distance(at, source.at) * pattern.frequency * source.frequency +
                      pattern.phase) /
                source.frequency;
-    return 0.5 + 0.2 * sum / kWaveSources;
+    return 0.5 + 0.2 * sum / double(sources.size());
 }
 
 /// Returns the share of half a turn from pointing away from `direction` to pointing along it.

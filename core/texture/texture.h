@@ -80,13 +80,13 @@ struct Pattern {
         Planar,
         Quilted, // parameters: the control values
         Radial,
-        Ripples,
-        Slope, // parameters: direction (or a point), the slopes of the values 0 and 1, 1 for a
-               // point, a height's gradient and its value at the origin, which is added
+        Ripples, // parameters: the number of sources; 0: 10
+        Slope,   // parameters: direction (or a point), the slopes of the values 0 and 1, 1 for a
+                 // point, a height's gradient and its value at the origin, which is added
         Spherical,
         Spiral1, // parameters: the number of arms
         Spiral2, // likewise
-        Waves,
+        Waves,   // parameters: as Ripples
         Wood,
         Wrinkles,
         Average, // of all stops, weighted by their `at`

@@ -234,6 +234,17 @@ FromLight light_at(const Light& light, const dvec3& position) {
             light.color * float(attenuation(light, light.position - position, towards, distance))};
 }
 
+/// Returns the share of the light of a direction behind the surface that it scatters to the front.
+static vec3 light_from_behind(const SurfacePoint& surface, const dvec3& towards) {
+    const std::optional<Finish>& finish = surface.material->finish;
+    const double cosine = -glm::dot(surface.normal, towards);
+    if (!finish || finish->diffuse_back == 0 || !(cosine > 0) ||
+        glm::dot(surface.geometric_normal, towards) >= 0)
+        return vec3(0);
+    return surface.color * (surface.opacity * finish->diffuse_back *
+                            float(std::pow(cosine, double(finish->brilliance))));
+}
+
 vec3 direct_light(const Light& light, const SurfacePoint& surface) {
     if (!surface.lit_by.includes(light.group))
         return vec3(0);
@@ -243,9 +254,9 @@ vec3 direct_light(const Light& light, const SurfacePoint& surface) {
     const FromLight from = light_at(light, surface.position);
     const dvec3 towards = from.towards != dvec3(0) ? from.towards : surface.normal;
     const double cosine = glm::dot(surface.normal, towards);
-    if (!(cosine > 0) || !(glm::dot(surface.geometric_normal, towards) > 0))
-        return vec3(0);
     const vec3 arriving = from.color * std::numbers::inv_pi_v<float>;
+    if (!(cosine > 0) || !(glm::dot(surface.geometric_normal, towards) > 0))
+        return light_from_behind(surface, towards) * arriving;
     if (!surface.material->finish)
         return surface.color * arriving * float(cosine);
     return finish_light(surface, towards, arriving, /* highlights= */ !light.shadowless);

@@ -100,6 +100,23 @@ TEST(DirectLight, FollowsTheCosineAndStopsBehindTheSurface) {
     EXPECT_EQ(direct_light({{0, -5, 0}, vec3(1)}, s), vec3(0));
 }
 
+TEST(DirectLight, FromBehindCountsWhereTheFinishSaysSo) {
+    Scene scene;
+    Material material;
+    material.color = vec3(0.5f);
+    material.finish = Finish{.diffuse_back = 0.4f, .brilliance = 2};
+    scene.materials = {material};
+    scene.add_mesh("", 0, Chunk::owning(dvec3(0), {{-1, 0, 1}, {1, 0, 1}, {0, 0, -2}}));
+    const SurfacePoint point =
+        surface_point(scene, {{0, 1, 0}, 0, {0, -1, 0}}, Hit{1, 0.3, 0.3, {0, 0}});
+    Light below;
+    below.position = point.position + dvec3(std::sqrt(3), -1, 0); // a cosine of 1/2
+    const vec3 light = direct_light(below, point);
+    EXPECT_NEAR(light.x, below.color.x * std::numbers::inv_pi_v<float> * 0.5f * 0.4f / 4, 1e-6f);
+    scene.materials[0].finish->diffuse_back = 0;
+    EXPECT_EQ(direct_light(below, point), vec3(0));
+}
+
 TEST(DirectLight, DoesNotShineThroughTheTriangleOntoATiltedNormal) {
     const vec3 tilted = glm::normalize(vec3(1, 0.1f, 0));
     const SurfacePoint s =

@@ -242,7 +242,7 @@ Whitted::Met Whitted::meet(const Ray& ray, const Path& path, const Hit& hit,
     const auto follow = [&](const vec3& share, float taken, RayKind kind, int deeper,
                             auto&& child) {
         const vec3 weight = arriving * share;
-        if (path.depth >= max_depth_ || max_component(weight) < kMinWeight)
+        if (path.depth >= max_depth_ || max_component(glm::abs(weight)) < kMinWeight)
             return;
         met.weight -= arriving * taken;
         const bool reflected = path.reflected || kind == RayKind::Reflection;
@@ -265,14 +265,20 @@ void Whitted::light_up(const Light& light, uint32_t number, const Met& met, Film
     vec3 arriving = float(light_stride_) * met.weight * direct_light(light, met.surface);
     if (arriving == vec3(0))
         return;
-    const Ray ray = shadow_ray(light, met.surface.position);
+    Ray ray = shadow_ray(light, met.surface.position);
+    const bool from_behind =
+        glm::dot(ray.dir - light.shadow_offset, met.surface.geometric_normal) < 0;
+    if (from_behind)
+        ray = shadow_ray(light, met.surface.beyond);
     arriving *= share_of_air(light, ray);
     if (!shadows_ || light.shadowless) {
         film.add(met.pixel, arriving);
         return;
     }
     // The surface itself may hide a point of an area light whose middle lights it.
-    if (light.shadow_offset == dvec3(0) || glm::dot(ray.dir, met.surface.geometric_normal) > 0)
+    const double side = from_behind ? -1 : 1;
+    if (light.shadow_offset == dvec3(0) ||
+        side * glm::dot(ray.dir, met.surface.geometric_normal) > 0)
         spawned.shadows.push(ray, met.id, {met.pixel, number, 0, arriving});
 }
 

@@ -114,6 +114,8 @@ void Gatherer::inherit(const Object& object, Inherited& from) {
         from.interior = {&*object.interior, from.placed};
     from.hollow = from.hollow || object.hollow;
     from.interior.hollow = from.hollow;
+    from.double_illuminate = from.double_illuminate || object.double_illuminate;
+    from.interior.double_illuminate = from.double_illuminate;
     from.placed = from.placed * object.placed;
     from.in_solid = from.in_solid * object.placed;
     from.seen_by &= object.seen_by;

@@ -33,6 +33,7 @@ struct Inherited {
     bool uv_mapping = false;
     bool inverse = false;
     bool hollow = false;
+    bool double_illuminate = false;
 };
 
 /// The look and the scene, which gets materials and lights, must outlive this.

@@ -152,7 +152,8 @@ void MaterialTable::fill(const PlacedInterior& interior, ovc::Material& material
 static Finish with_peaks(const Surface& surface) {
     Finish finish = surface.finish;
     if (surface.diffuse_is_albedo)
-        finish.diffuse *= (finish.brilliance + 1) / 2;
+        for (float* part : {&finish.diffuse, &finish.diffuse_back})
+            *part *= (finish.brilliance + 1) / 2;
     if (surface.phong_is_albedo)
         finish.phong *= (finish.phong_size + 1) / 2;
     if (surface.specular_is_albedo) {
@@ -173,11 +174,15 @@ ovc::Material MaterialTable::made(const Texture& texture, const Color& color, co
     Finish finish = with_peaks(texture.surface);
     finish.ambient = texture.surface.ambient * look_.ambient_light + texture.surface.emission;
     finish.irid_wavelengths = look_.irid_wavelengths;
+    if (interior.double_illuminate)
+        finish.diffuse_back = finish.diffuse;
     finish.filter_by_brightest = look_.before_3_7;
     if (!varies) {
-        // With a transmit above 1 it is below 0: scenes raise contrasts so.
-        const float share = std::clamp(opacity(color, look_.before_3_7), -kMaxShare, 1.0f);
+        // With a transmit above 1 it is below 0: scenes raise contrasts so. With one below 0, which
+        // turns colors round, it is above 1.
+        const float share = std::clamp(opacity(color, look_.before_3_7), -kMaxShare, kMaxShare);
         finish.diffuse *= share;
+        finish.diffuse_back *= share;
         finish.ambient *= share;
     }
     material.color = color.rgb;
@@ -189,9 +194,9 @@ ovc::Material MaterialTable::made(const Texture& texture, const Color& color, co
         material.texture = textures_.of_pigment(pigment, placed);
     } else {
         const vec3 through = refraction * color.through();
-        material.transmission = std::clamp(max_component(through), 0.0f, kMaxShare);
+        material.transmission = std::min(max_component(glm::abs(through)), kMaxShare);
         if (material.transmission > 0)
-            material.filter = glm::clamp(through / material.transmission, 0.0f, 1.0f);
+            material.filter = glm::clamp(through / material.transmission, -1.0f, 1.0f);
     }
     const double ior = texture.surface.ior.value_or(interior.interior ? interior.interior->ior : 1);
     material.ior = is_usable_ior(ior) ? ior : 1;

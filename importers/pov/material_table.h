@@ -11,12 +11,13 @@ namespace ovc::pov {
 
 void tell_all(const Notes& notes, const Look& look);
 
-/// An interior, the transformation that brings its media into the world, and whether the object is
-/// hollow, without which it has no media.
+/// An interior, the transformation that brings its media into the world, whether the object is
+/// hollow, without which it has no media, and whether light lights both of its sides.
 struct PlacedInterior {
     const Interior* interior = nullptr; // null: none
     dmat4 placed{1};
     bool hollow = false;
+    bool double_illuminate = false;
 };
 
 /// Adds materials to a scene. Equal ones are added once.

@@ -82,7 +82,8 @@ struct Object {
     bool uv_mapping = false;       // of its own texture and those of its parts
     bool global_lights = false;    // of a light_group: lights of no group shine on it too
     bool inverse = false;
-    bool hollow = false; // media may fill it
+    bool hollow = false;            // media may fill it
+    bool double_illuminate = false; // light that arrives at a far side lights the near one, too
     bool open = false;
     bool has_inside = true; // false for a sheet, which cannot take anything away from a solid
 };

@@ -199,6 +199,8 @@ private:
                 gamma_given_ = true;
             } else if (reader_.take("max_trace_level"))
                 trace_level_ = uint32_t(parse_int(reader_, 1, 256, "max_trace_level"));
+            else if (reader_.take("number_of_waves"))
+                reader_.wave_sources = parse_int(reader_, 1, 1000, "number_of_waves");
             else if (reader_.take("noise_generator"))
                 reader_.noise = NoiseKind(parse_int(reader_, 1, 3, "noise_generator"));
             else if (reader_.take("ambient_light"))

@@ -264,6 +264,14 @@ TEST(PovDirectives, DeclarationsNeedNoSemicolon) {
     EXPECT_VALUE(1, "1", "declare Old = 3 /* a /* nested */ comment */");
 }
 
+TEST(PovDirectives, MacrosTakeTheVariableThatEndsBeforeThem) {
+    // The macro is found while the texture's next layer is looked for.
+    const Result<Scene> scene = parse("#macro M(Look) sphere { 0, 1 texture { Look } } #end\n"
+                                      "#declare T = texture { pigment { rgb x } }\nM(T)");
+    ASSERT_TRUE(scene) << scene.error().message;
+    EXPECT_EQ(scene->materials.at(0).color, vec3(1, 0, 0));
+}
+
 TEST(PovDirectives, WhatStandsBehindANameMayChangeIt) {
     // A macro that ends with a declaration has ended before the value is assigned.
     EXPECT_VALUE(10, "A[1]",
@@ -614,6 +622,23 @@ TEST(PovErrors, NamesOfNothingAreNotPassedOver) {
         ASSERT_FALSE(scene) << look;
         EXPECT_TRUE(scene.error().message.starts_with("x.pov:2:")) << scene.error().message;
     }
+}
+
+TEST(PovScene, LightMayComeFromBehind) {
+    const auto finish = [](const std::string& object) {
+        return *parse("#version 3.7; " + object)->materials.at(0).finish;
+    };
+    EXPECT_EQ(finish("box { 0, 1 finish { diffuse 0.6, 0.4 } }").diffuse_back, 0.4f);
+    EXPECT_EQ(finish("union { box { 0, 1 } double_illuminate }").diffuse_back, 0.6f);
+    EXPECT_EQ(finish("box { 0, 1 double_illuminate off }").diffuse_back, 0);
+}
+
+TEST(PovScene, TransmitsBelowZeroTurnColorsRound) {
+    const Result<Scene> scene = parse("#version 3.7; box { 0, 1 pigment { rgb 0.5 transmit -1 } "
+                                      "finish { ambient 1 diffuse 0.5 } }");
+    const Material& material = scene->materials.at(0);
+    EXPECT_EQ(material.transmission * material.filter, vec3(-1));
+    EXPECT_EQ(material.finish->diffuse, 1);
 }
 
 /// povray 3.7.0.10 draws `finish { ior 1.2 }` and `interior { ior 1.2 }` alike, with any version.

@@ -82,18 +82,20 @@ NearestPoints nearest_points(const dvec3& at, const CrackleMetric& metric) {
     return found;
 }
 
-const std::array<WaveSource, kWaveSources>& wave_sources() {
-    static const std::array<WaveSource, kWaveSources> kAll = [] {
-        std::array<WaveSource, kWaveSources> all;
+std::span<const WaveSource> wave_sources(double count) {
+    static const std::array<WaveSource, kMaxWaveSources> kAll = [] {
+        std::array<WaveSource, kMaxWaveSources> all;
         uint32_t state = 1952292254; // of the generator of rand() when it gives the first frequency
-        for (size_t i = 0; i < kWaveSources; ++i) {
+        for (size_t i = 0; i < kMaxWaveSources; ++i) {
             const double share = double(state >> 16 & 0x7fff) / 0x7fff;
             all[i] = {glm::normalize(vector_noise({double(i), 0, 0})), share + 0.01};
             state = state * 1812433253u + 12345u;
         }
         return all;
     }();
-    return kAll;
+    constexpr size_t kDefault = 10;
+    return std::span(kAll).first(count >= 1 ? size_t(std::min(count, double(kMaxWaveSources)))
+                                            : kDefault);
 }
 
 } // namespace ovc

@@ -6,6 +6,7 @@
 #include "core/texture/noise/noise.h"
 
 #include <array>
+#include <span>
 
 namespace ovc {
 
@@ -31,7 +32,9 @@ struct WaveSource {
     dvec3 at;
     double frequency;
 };
-inline constexpr size_t kWaveSources = 10;
-const std::array<WaveSource, kWaveSources>& wave_sources();
+inline constexpr size_t kMaxWaveSources = 1000;
+
+/// Returns the first `count` sources, but at most kMaxWaveSources; 0 stands for povray's default.
+std::span<const WaveSource> wave_sources(double count);
 
 } // namespace ovc

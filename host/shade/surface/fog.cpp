@@ -75,17 +75,28 @@ ThroughFog through_rainbows(std::span<const Rainbow> bows, const Ray& ray, doubl
     return all;
 }
 
+/// Returns the share of the fog that noise leaves on a way of this length, given in fog distances,
+/// whose middle is `middle`.
+static double share_of_noise(const Fog& fog, const dvec3& middle, double depth) {
+    if (fog.turbulence == dvec3(0))
+        return 1;
+    const double noise =
+        fog.turbulence_depth * scalar_turbulence(fog.turbulence * middle, fog.octaves, fog.noise);
+    return 1 - std::clamp(noise, 0.0, 1.0) * std::exp(-depth);
+}
+
 ThroughFog through_fog(std::span<const Fog> fogs, const Ray& ray, double t) {
     ThroughFog all;
     const double length = glm::length(ray.dir);
     const double way = std::isfinite(t) ? t * length : kEndless;
     for (const Fog& fog : fogs) {
+        const dvec3 end = ray.org + way / length * ray.dir;
         double depth = way / fog.distance;
+        depth *= share_of_noise(fog, 0.5 * (ray.org + end), depth);
         if (fog.altitude > 0) {
             const auto height = [&](const dvec3& at) {
                 return (glm::dot(at, fog.up) - fog.offset) / fog.altitude;
             };
-            const dvec3 end = ray.org + way / length * ray.dir;
             depth *= mean_density(height(ray.org), height(end));
         }
         const float left = std::max(float(std::exp(-depth)), fog.color.transmit);

@@ -33,6 +33,33 @@ TEST(Fog, MixesColorsAsPovrayDoes) {
     }
 }
 
+/// The fog of `fog { distance 20 rgb 1 turbulence T turb_depth D }` before a black wall 10 away, as
+/// povray 3.7.0.10 draws it, has these optical depths, in units of those without turbulence.
+TEST(Fog, IsThinnedByTurbulenceAsPovrayDoes) {
+    const struct {
+        double turbulence, depth;
+        dvec2 at;
+        double expected;
+    } kCases[] = {{1, 0.5, {0, 0}, 0.82425},
+                  {1, 0.5, {1.3, 4.1}, 0.54096},
+                  {0.5, 0.5, {-2.2, 0.7}, 0.76701},
+                  {1, 1, {3, 0}, 0.39347},
+                  {1, 0.01, {3, 0}, 0.99046}};
+    for (const auto& test : kCases) {
+        const Ray ray{dvec3(test.at, -10), 0, dvec3(0, 0, 1), 1e30};
+        Fog fog{.color = {vec3(1)}, .distance = 20};
+        fog.turbulence = dvec3(test.turbulence), fog.turbulence_depth = test.depth;
+        const ThroughFog through = through_fog({&fog, 1}, ray, 10);
+        EXPECT_NEAR(-2 * std::log(double(through.share.x)), test.expected, 1e-3)
+            << test.at.x << " " << test.at.y;
+    }
+    Fog ground{.color = {vec3(1)}, .distance = 20, .altitude = 0.5};
+    ground.turbulence = dvec3(1);
+    const Ray ray{dvec3(0.5, 0.3, -10), 0, dvec3(0, 0, 1), 1e30};
+    const ThroughFog through = through_fog({&ground, 1}, ray, 10);
+    EXPECT_NEAR(-2 * std::log(double(through.share.x)), 0.44133, 1e-3);
+}
+
 /// povray 3.7.0.10 draws these with a background of <0.2, 0.4, 0.8>.
 TEST(Fog, RainbowsLieAroundSunlightAsPovrayDrawsThem) {
     const vec3 sky(0.2f, 0.4f, 0.8f);

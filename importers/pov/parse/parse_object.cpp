@@ -180,7 +180,6 @@ void parse_hiding(Reader& reader, Object& object, uint32_t kinds) {
 }
 
 bool parse_switch(Reader& reader, Object& object) {
-    const Token token = reader.peek();
     if (reader.take("global_lights"))
         object.global_lights = parse_flag(reader);
     else if (reader.take("no_shadow"))
@@ -189,10 +188,9 @@ bool parse_switch(Reader& reader, Object& object) {
         parse_hiding(reader, object, kSeenByCamera);
     else if (reader.take("no_reflection"))
         parse_hiding(reader, object, kSeenInReflections);
-    else if (reader.take("double_illuminate")) {
-        if (parse_flag(reader))
-            object.notes.push_back(left_out(reader, "an object", token));
-    } else if (reader.take("uv_mapping"))
+    else if (reader.take("double_illuminate"))
+        object.double_illuminate = parse_flag(reader);
+    else if (reader.take("uv_mapping"))
         object.uv_mapping = parse_flag(reader);
     else if (reader.take("inverse"))
         object.inverse = !object.inverse;

@@ -32,6 +32,7 @@ SkySphere parse_sky_sphere(Reader& reader) {
 
 Fog parse_fog(Reader& reader) {
     Fog fog;
+    fog.noise = reader.noise_kind();
     bool on_ground = false;
     reader.expect('{', "fog");
     while (!reader.take('}')) {
@@ -48,6 +49,16 @@ Fog parse_fog(Reader& reader) {
             fog.altitude = parse_float(reader);
         else if (reader.take("up"))
             fog.up = parse_vector(reader);
+        else if (reader.take("turbulence"))
+            fog.turbulence = parse_vector(reader);
+        else if (reader.take("turb_depth"))
+            fog.turbulence_depth = parse_float(reader);
+        else if (reader.take("octaves"))
+            fog.octaves.count = uint64_t(std::clamp(parse_float(reader), 1.0, double(kMaxOctaves)));
+        else if (reader.take("lambda"))
+            fog.octaves.lambda = parse_float(reader);
+        else if (reader.take("omega"))
+            fog.octaves.omega = parse_float(reader);
         else if (const auto m = take_transform(reader))
             fog.up = dvec3(*m * dvec4(fog.up, 0));
         else if (starts_color(token) || starts_number(reader, token))

@@ -196,8 +196,8 @@ bool PatternParts::take_pattern(const Token& token) {
     if (token.is("facets") && of_ != MapOf::Normals)
         reader_.fail(token.place, "found facets, expected a pattern that is not for normals alone");
     choose(found->second.kind, found->second.wave);
-    if (stops_.empty() && token.is("bozo"))
-        stops_ = default_stops(&token, Kind::Bozo);
+    if (stops_.empty() && (token.is("bozo") || token.is("mandel")))
+        stops_ = default_stops(&token, found->second.kind);
     parse_arguments(token);
     return true;
 }
@@ -216,6 +216,8 @@ void PatternParts::parse_arguments(const Token& token) {
         parse_facets();
     else if (token.is("quilted"))
         pattern_.parameters = {1, 1};
+    else if (token.is("ripples") || token.is("waves"))
+        pattern_.parameters[0] = reader_.wave_sources;
     else if (token.is("function"))
         take_function(token, parse_function(reader_));
     else if (token.is("pigment_pattern"))

@@ -112,6 +112,11 @@ std::vector<MapStop> default_stops(const Token* word, Pattern::Kind kind) {
     case Pattern::Kind::Cubic:
         return {stop(0, {1, 0, 0}), stop(1, {0, 1, 0}), stop(2, {0, 0, 1}),
                 stop(3, {1, 1, 0}), stop(4, {0, 1, 1}), stop(5, {1, 0, 1})};
+    case Pattern::Kind::Fractal: // povray 3.7.0.10 gives mandel alone these, which change early
+        if (!word || !word->is("mandel"))
+            break;
+        return {stop(0.001, vec3(0)), stop(0.001, {0, 1, 1}), stop(0.012, {1, 1, 0}),
+                stop(0.015, {1, 0, 1}), stop(0.1, {0, 1, 1})};
     case Pattern::Kind::Hexagon:
         return {stop(0, {0, 0, 1}), stop(1, {0, 1, 0}), stop(2, {1, 0, 0})};
     case Pattern::Kind::Marble:

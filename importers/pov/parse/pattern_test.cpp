@@ -84,6 +84,7 @@ const AskedColors kAskedColors[] = {
      {{0.19761f, 0, 0.80239f}, {0.33783f, 0, 0.66217f}}},
     {"julia <0.353, 0.288>, 20 interior 1, 1 scale 2 color_map { [0 rgb x] [1 rgb z] }",
      {{0.60805f, 0, 0.39195f}, {0.95f, 0, 0.05f}}},
+    {"mandel 20", {{0, 1, 1}, {0, 0, 0}}},
     {"triangular rgb x, rgb z scale 0.4", {{1, 0, 0}, {0, 0, 1}}},
     {"square rgb x, rgb z scale 0.4", {{1, 0, 0}, {0, 0, 1}}},
     {"gradient x warp { black_hole <0, 1, 0>, 3 strength 0.5 } color_map { [0 rgb x] [1 rgb z] }",
@@ -340,6 +341,25 @@ TEST(PovSky, HasFog) {
     EXPECT_EQ(scene.background.fogs[0].distance, 5);
     EXPECT_EQ(scene.background.fogs[0].color.transmit, 0.5f);
     EXPECT_EQ(scene.background.fogs[1], (Fog{{vec3(1)}, 3, 2, 1, {0, 0, 1}}));
+}
+
+TEST(PovSky, FogMayBeTurbulent) {
+    const Scene scene = textured_scene("fog { distance 5 rgb 1 turbulence <1, 2, 3> turb_depth 0.2 "
+                                       "octaves 3 omega 0.7 lambda 3 } box { 0, 1 }");
+    EXPECT_TRUE(scene.omissions.empty());
+    const Fog& fog = scene.background.fogs.at(0);
+    EXPECT_EQ(fog.turbulence, dvec3(1, 2, 3));
+    EXPECT_EQ(fog.turbulence_depth, 0.2);
+    EXPECT_EQ(fog.octaves, (Octaves{3, 0.7, 3}));
+}
+
+TEST(PovPattern, HasAsManyWaveSourcesAsTheSceneSays) {
+    const std::string box = "box { 0, 1 pigment { ripples } }";
+    const auto sources = [](const Scene& scene) {
+        return scene.textures.at(0).pattern.parameters[0];
+    };
+    EXPECT_EQ(sources(textured_scene("global_settings { number_of_waves 3 } " + box)), 3);
+    EXPECT_EQ(sources(textured_scene(box)), 10);
 }
 
 TEST(PovSky, HasRainbows) {

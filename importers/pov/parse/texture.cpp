@@ -80,7 +80,7 @@ bool parse_finish_part(Reader& reader, Surface& surface) {
     else if (reader.take("diffuse")) {
         finish.diffuse = parse_share(reader, surface.diffuse_is_albedo);
         if (reader.take(','))
-            parse_float(reader);
+            finish.diffuse_back = float(parse_float(reader));
     } else if (reader.take("crand"))
         finish.crand = float(parse_float(reader));
     else if (reader.take("brilliance"))
