@@ -180,6 +180,23 @@ TEST(CsgRound, ASphereHalvedThroughItsCornersIsClosed) {
     EXPECT_NEAR(volume(half), 0.5 * volume(evaluate(flat(Kind::Union, {ball}))), 1e-9);
 }
 
+TEST(CsgRound, IntegersStayIntegers) {
+    // A checker on a floor at a whole number shows which side of it corners are on.
+    for (int i = 0; i < 20; ++i) {
+        const double far = 1000 + 12.34567 * i;
+        const Tree tree = flat(Kind::Intersection, {box({-far, -3 * far, -100}, {500, 0, far}),
+                                                    inverse(box({-1, -2, -5}, {1, 1, 20}))});
+        int on_floor = 0;
+        for (const Part& part : evaluate(tree))
+            for (const dvec3& corner : part.corners)
+                if (std::abs(corner.y + 2) < 0.01) {
+                    EXPECT_EQ(corner.y, -2) << i;
+                    ++on_floor;
+                }
+        EXPECT_GE(on_floor, 6) << i;
+    }
+}
+
 TEST(CsgRound, PartsLieOnTheTriangleTheyAreOf) {
     const Tree tree =
         flat(Kind::Intersection, {sphere(dvec3(0), 1), inverse(sphere(dvec3(0.5, 0.25, 0), 0.75))});

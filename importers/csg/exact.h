@@ -26,6 +26,8 @@ inline constexpr int kGridBits = 39;
 /// Points are rounded to this many fractional bits. They then have 52 bits in all, which a double
 /// holds.
 inline constexpr int kFractionBits = 13;
+/// The corners of results are multiples of 2^kSnapBits steps of the grid.
+inline constexpr int kSnapBits = 3;
 
 /// The points p with n . p + d = 0. The sum is positive above the plane.
 struct Plane {

@@ -17,9 +17,12 @@ Grid::Grid(const std::vector<Operand>& operands) {
     const dvec3 half = 0.5 * box.extent();
     std::frexp(std::max(max_component(half), 1e-30), &exponent);
     exponent += 2 - kGridBits; // One of the two bits makes room for the rounding of the origin.
-    // The origin is a multiple of the grid's step, so that integers stay integers.
+    // The origin is a multiple of the grid's step, so that integers stay integers; where snapping
+    // moves corners by more than textures can overlook, also one of what corners are snapped to.
+    constexpr double kSmall = 1024;
+    const int snapped = exponent + (max_component(half) > kSmall ? kSnapBits : 0);
     for (int i = 0; i < 3; ++i)
-        origin[i] = std::ldexp(std::round(std::ldexp(box.center()[i], -exponent)), exponent);
+        origin[i] = std::ldexp(std::round(std::ldexp(box.center()[i], -snapped)), snapped);
 }
 
 bool Grid::holds(const dvec3& p) const {

@@ -23,7 +23,7 @@ struct HashOfCorner {
 /// Corners are snapped to 2^-36 of the size of all operands. Because the operands' corners were
 /// rounded, lines that should meet in one point meet in several, a little apart. Snapping makes
 /// these one point again. Edges that matched still match, whichever corners become one.
-constexpr int kSnappedBits = 3 + kFractionBits;
+constexpr int kSnappedBits = kSnapBits + kFractionBits;
 
 Corner snapped(Corner p) {
     for (int64_t& x : p)
