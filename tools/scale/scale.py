@@ -78,12 +78,16 @@ def job_of(run, ranks):
 
 def costs_of_sharing(more, away):
     """Returns what a ray and a visit elsewhere take, neither below 0, so that a ray with so many
-    visits `away` comes to `more`, by least squares over two runs."""
-    if away[0] != away[1]:
-        slope = (more[1] - more[0]) / (away[1] - away[0])
-        if slope >= 0 and more[0] >= slope * away[0]:
-            return more[0] - slope * away[0], slope
+    visits `away` comes to `more`, by least squares over two runs. Where both send about as many
+    rays, nothing tells the two apart, and each has half."""
     ray = max(statistics.mean(more), 0.0)
+    if max(away) == 0:
+        return ray, 0.0
+    if max(away) < 1.5 * min(away):
+        return ray / 2, ray / 2 / statistics.mean(away)
+    slope = (more[1] - more[0]) / (away[1] - away[0])
+    if slope >= 0 and more[0] >= slope * away[0]:
+        return more[0] - slope * away[0], slope
     visit = max(sum(m * a for m, a in zip(more, away)) / sum(a * a for a in away), 0.0)
 
     def off(ray, visit):
