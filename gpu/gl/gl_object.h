@@ -64,6 +64,11 @@ private:
     uint64_t bytes_;
 };
 
+inline GLuint create_buffer() {
+    GLuint id = 0;
+    glCreateBuffers(1, &id);
+    return id;
+}
 inline void delete_buffer(GLuint id) {
     glDeleteBuffers(1, &id);
 }
@@ -96,7 +101,7 @@ using Program = Handle<delete_program>;
 class Buffer {
 public:
     Buffer(Ledger& ledger, uint64_t bytes, std::string_view label)
-        : handle_(create()), entry_(ledger, bytes) {
+        : handle_(create_buffer()), entry_(ledger, bytes) {
         if (!ledger.driver_has_room())
             return;
         if (!ledger.takes_host_pages)
@@ -109,11 +114,6 @@ public:
     uint64_t bytes() const { return entry_.bytes(); }
 
 private:
-    static GLuint create() {
-        GLuint id = 0;
-        glCreateBuffers(1, &id);
-        return id;
-    }
     void allocate() {
         glNamedBufferStorage(id(), GLsizeiptr(bytes()), nullptr,
                              GL_DYNAMIC_STORAGE_BIT | GL_MAP_WRITE_BIT);

@@ -13,7 +13,7 @@ namespace ovc::gl {
 class MappedBuffer {
 public:
     /// access: GL_MAP_WRITE_BIT or GL_MAP_READ_BIT, what this process does.
-    MappedBuffer(size_t bytes, GLbitfield access) : handle_(create()) {
+    MappedBuffer(size_t bytes, GLbitfield access) : handle_(create_buffer()) {
         const GLbitfield mapped = access | GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT;
         glNamedBufferStorage(id(), GLsizeiptr(bytes), nullptr, mapped | GL_CLIENT_STORAGE_BIT);
         void* const memory = glMapNamedBufferRange(id(), 0, GLsizeiptr(bytes), mapped);
@@ -28,12 +28,6 @@ public:
     std::span<std::byte> memory() const { return memory_; }
 
 private:
-    static GLuint create() {
-        GLuint id = 0;
-        glCreateBuffers(1, &id);
-        return id;
-    }
-
     Handle<delete_buffer> handle_;
     std::span<std::byte> memory_;
 };

@@ -11,7 +11,6 @@
 #include "shaders/layout.h"
 
 #include <algorithm>
-#include <bit>
 #include <cassert>
 #include <utility>
 
@@ -108,7 +107,8 @@ Tracer::Tracer(std::unique_ptr<Ledger> ledger, const MemoryPlan& plan, const Pas
 }
 
 Tracer::~Tracer() {
-    // A pass that was forgotten may still read buffers that lie in this process's own pages.
+    // A pass that could not be collected may still read buffers that lie in this process's own
+    // pages.
     if (device_.takes_host_pages && generation_ == gl::context_generation)
         glFinish();
 }

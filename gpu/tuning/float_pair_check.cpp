@@ -41,10 +41,9 @@ bool is_right(const FloatPairQuestion& q, const FloatPairAnswer& told) {
 }
 
 gl::Handle<gl::delete_buffer> make_buffer(size_t bytes, const void* data) {
-    GLuint id = 0;
-    glCreateBuffers(1, &id);
-    glNamedBufferStorage(id, GLsizeiptr(bytes), data, 0);
-    return gl::Handle<gl::delete_buffer>(id);
+    gl::Handle<gl::delete_buffer> buffer(gl::create_buffer());
+    glNamedBufferStorage(buffer.id(), GLsizeiptr(bytes), data, 0);
+    return buffer;
 }
 
 } // namespace

@@ -56,7 +56,7 @@ struct StopsSoon final : TraceWatch {
     bool goes_on(double done) override { return done < 0.3; }
 };
 
-/// A call that ends early leaves a pass under way.
+/// A call that ends early waits for the pass that it has begun.
 TEST_P(LateTwoLevelGl, ACallAfterOneThatWasCancelledAnswersAsEver) {
     const std::vector<Hit> expected = test::brute_force(soup, rays);
     const auto structure =

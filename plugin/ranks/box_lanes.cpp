@@ -140,19 +140,15 @@ RayPacket::RayPacket(std::span<const Ray> rays) {
     is_bounded_ = are_ordered && are_finite && is_one_way;
 }
 
-/// Sets a lane to the box.
-static void put(const Box& box, Eight& lanes, size_t lane) {
-    for (int axis = 0; axis < 3; ++axis) {
-        lanes.sides[axis][lane] = box.lo[axis];
-        lanes.sides[3 + axis][lane] = box.hi[axis];
-    }
-}
-
 /// Appends the box. size: how many there are.
 static void append(const Box& box, size_t size, std::vector<Eight>& lanes) {
-    if (size % kLanes == 0)
+    const size_t lane = size % kLanes;
+    if (lane == 0)
         lanes.push_back(nowhere());
-    put(box, lanes.back(), size % kLanes);
+    for (int axis = 0; axis < 3; ++axis) {
+        lanes.back().sides[axis][lane] = box.lo[axis];
+        lanes.back().sides[3 + axis][lane] = box.hi[axis];
+    }
 }
 
 BoxLanes::BoxLanes(std::span<const Box> boxes) : boxes_(boxes.size()) {
