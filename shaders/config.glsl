@@ -65,12 +65,6 @@
 #ifndef OVC_BRANCHES
 #define OVC_BRANCHES 0
 #endif
-// 1: neighbouring work groups go to different threads of a driver that gives each thread a
-// contiguous share of the dispatch (llvmpipe: 8 % of camera rays). With ray refill there are too
-// few groups for it.
-#ifndef OVC_DEAL_GROUPS
-#define OVC_DEAL_GROUPS 1
-#endif
 // How pages, portals and rays are read. 0: by texelFetch; 1: by imageLoad (inlined on llvmpipe, 5 %
 // faster); 2: from storage buffers. OVC_TEXELS declares such texels under a name of their own,
 // OVC_SHARED_TEXELS those that the kernel may write to under another.

@@ -134,7 +134,9 @@
 #define OVC_SAYS_MORE 0x80000000u
 #define OVC_LOCATION_PLANE 0 // of the uniform with the number of words in a plane
 #define OVC_LOCATION_RAYS 2  // of the uniform with the number of rays in the pass
+#define OVC_LOCATION_LANE_RAYS 3 // of the uniform with how many rays a subgroup claims for a lane
 
+#define OVC_BINDING_SHARES 0 // of the atomic counter of shares, with ray refill
 #define OVC_BINDING_NAMES 0 // the rays once more, to write names in their places
 #define OVC_BINDING_RAYS 1
 #define OVC_BINDING_ANSWERS 2
@@ -154,10 +156,6 @@
 // Max invocations in a work group of the compute kernel. A block of rays is a multiple of it, also
 // where an invocation takes two rays.
 #define OVC_MAX_GROUP_SIZE 128
-// Where groups are dealt out (config.glsl): the number of groups that stay together, and the number
-// of slices into which the others are dealt.
-#define OVC_DEALT_GROUPS 4
-#define OVC_DEALT_SLICES 16
 
 // Invocations in a work group of the kernel that gpu/tuning/float_pair_check.h runs.
 #define OVC_CHECKED_PAIRS 64

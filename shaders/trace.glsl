@@ -186,10 +186,11 @@ const int OVC_REFILL_ROUNDS = OVC_PACKET > 1 ? 5 : (OVC_PORTALS != 0 ? 5 : 3);
 
 // Traces the rays from `begin` to before `end` by the lanes of a subgroup. Now and then the lanes
 // that have an answer go on to the next rays that no lane has taken, so that lanes do not wait for
-// each other.
+// each other. rounds: of the subgroup, counted on; never fewer than llvmpipe has counted of its
+// loops.
 // Based on: Aila and Laine 2009, "Understanding the Efficiency of Ray Traversal on GPUs" (replacing
-// terminated rays).
-void trace_with_refill(int begin, int end) {
+// terminated rays, persistent threads).
+void trace_with_refill(int begin, int end, inout int rounds) {
     Tree tree = tree_of(0, 0);
     Descent d = descent(tree);
     Packet packet;
@@ -197,7 +198,6 @@ void trace_with_refill(int begin, int end) {
     int ray = begin + int(gl_SubGroupInvocationARB) * OVC_PACKET;
     int next = begin + int(gl_SubGroupSizeARB) * OVC_PACKET; // the same in all lanes
     uint lanes_before = (1u << gl_SubGroupInvocationARB) - 1u;
-    int rounds = 0; // of the subgroup: never fewer than llvmpipe has counted of its loops
     int looks = 0;  // since the lane took its rays
     d.done = !take_rays(ray, tree, packet, found);
     while (ray < end) {

@@ -147,15 +147,14 @@ std::string ShaderConfig::defines() const {
                        "#define OVC_PACKET {}\n"
                        "#define OVC_REFILL {}\n"
                        "#define OVC_BRANCHES {}\n"
-                       "#define OVC_DEAL_GROUPS {}\n"
                        "#define OVC_READS {}\n"
                        "#define OVC_GROUP_SIZE {}\n"
                        "#define OVC_MAX_ROUNDS {}\n"
                        "#define OVC_COUNTS {}\n",
                        any_hit, certify, portals, float_pairs, far_triangles, may_wait, tell_active,
                        loose_pairs, pool_buffers, each_buffer, buffer_bits, stack_depth,
-                       stack_registers, packet, refill, branches, deal_groups, int(reads),
-                       group_size, max_rounds, counts);
+                       stack_registers, packet, refill, branches, int(reads), group_size,
+                       max_rounds, counts);
 }
 
 /// Does everything that asks nothing of the driver that it would have to wait for.

@@ -37,7 +37,6 @@ struct ShaderConfig {
     uint32_t packet = 1; // rays that an invocation traces together
     bool refill = false; // a lane takes the next packet when its own is done
     bool branches = false;
-    bool deal_groups = true;
     TexelReads reads = TexelReads::Images;
     uint32_t group_size = 64;         // of the compute kernel
     uint32_t max_rounds = 0x7fffffff; // of all loops of a ray

@@ -88,10 +88,10 @@ void AnswerPixels::read(Answers& answers, size_t rays) {
 
 AnswerWords::AnswerWords(Ledger& ledger, uint32_t rays, bool copied_behind)
     : rays_(rays),
-      buffer_(ledger, uint64_t(rays) * kAnswerBytes, "answers"),
+      buffer_(ledger, uint64_t(rays) * kAnswerBytes + kCounterBytes, "answers"),
       read_back_(read_back_for(rays, copied_behind)) {
     assert(rays == whole_blocks(rays));
-    texture_.show(buffer_, GL_R32UI, 0, buffer_.bytes());
+    texture_.show(buffer_, GL_R32UI, 0, offset_of(4));
     // The plane stays like this while all pages are resident, because no answer names a leaf then.
     fill_plane(3, rays_, OVC_NO_LEAF);
 }
@@ -103,12 +103,20 @@ void AnswerWords::fill_plane(int number, size_t rays, uint32_t word) const {
                               &word);
 }
 
-void AnswerWords::dispatch(GLuint program, size_t rays, size_t group_rays) {
+void AnswerWords::dispatch(GLuint program, size_t rays, size_t group_rays, size_t lane_rays) {
     glProgramUniform1i(program, OVC_LOCATION_PLANE, GLint(rays_));
     glBindImageTexture(OVC_BINDING_ANSWERS, texture_.id(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32UI);
     const size_t all = whole_blocks(rays);
     fill_plane(0, all, OVC_MISS);
     glProgramUniform1i(program, OVC_LOCATION_RAYS, GLint(all));
+    if (lane_rays > 0) {
+        const uint32_t none = 0;
+        glClearNamedBufferSubData(buffer_.id(), GL_R32UI, GLintptr(offset_of(4)), kCounterBytes,
+                                  GL_RED_INTEGER, GL_UNSIGNED_INT, &none);
+        glBindBufferRange(GL_ATOMIC_COUNTER_BUFFER, OVC_BINDING_SHARES, buffer_.id(),
+                          GLintptr(offset_of(4)), kCounterBytes);
+        glProgramUniform1i(program, OVC_LOCATION_LANE_RAYS, GLint(lane_rays));
+    }
     glDispatchCompute(GLuint((all + group_rays - 1) / group_rays), 1, 1);
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     if (!read_back_)

@@ -90,6 +90,8 @@ private:
 
 /// Bytes of an answer on the GPU.
 inline constexpr uint64_t kAnswerBytes = 16;
+/// Bytes of the counter by which subgroups claim their rays, behind the answers of a pass.
+inline constexpr uint64_t kCounterBytes = 4;
 
 /// The leaf that the key of a link names.
 inline uint32_t leaf_of(uint32_t key) {
@@ -129,8 +131,9 @@ private:
 class AnswerWords {
 public:
     AnswerWords(Ledger& ledger, uint32_t rays, bool copied_behind);
-    /// group_rays: rays of a work group, or the max number with ray refill.
-    void dispatch(GLuint program, size_t rays, size_t group_rays);
+    /// group_rays: of a work group, on average. lane_rays: that a subgroup claims for each of its
+    /// lanes at a time, with ray refill; else 0.
+    void dispatch(GLuint program, size_t rays, size_t group_rays, size_t lane_rays);
     /// Reads the answers of the first slots.
     void read(Answers& answers, size_t slots);
 

@@ -22,18 +22,18 @@ constexpr uint32_t kMaxBlocksInSoftware = 512; // fewer, as llvmpipe clears the 
 constexpr uint32_t kMaxWordsInRegisters = 32;  // Workaround::ShortRegisterStack
 constexpr size_t kMaxLostShare =
     256; // if more than one ray in so many is lost, kernels go on longer
-// With ray refill: the max rays of a lane on average, if each thread still has some groups.
-constexpr size_t kLaneRays = 128;
+// With ray refill: the max rays of a lane in a share, if there are some shares for each thread.
+constexpr size_t kLaneRays = 64;
 constexpr size_t kGroupsAThread = 4;
 constexpr size_t kLanesOfGpu = 65536;     // as many as a large GPU runs at once
 constexpr uint64_t kSmallestPool = 16384; // a page of some hundred triangles
 
-/// Returns how many packets each lane takes on average, with ray refill.
-size_t packets_a_lane(size_t rays, size_t packet, const KernelVariant& variant, bool software) {
+/// Returns how many rays a subgroup claims for each lane, with ray refill: whole packets.
+size_t rays_a_lane(size_t rays, size_t packet, const KernelVariant& variant, bool software) {
     static_assert(kBlockRays % (OVC_MAX_GROUP_SIZE * kPacketRays) == 0); // no packet across groups
     const size_t lanes =
         software ? kGroupsAThread * thread_count() * variant.group_size : kLanesOfGpu;
-    return std::clamp<size_t>(rays / packet / lanes, 1, kLaneRays / packet);
+    return packet * std::clamp<size_t>(rays / packet / lanes, 1, kLaneRays / packet);
 }
 
 Result<Done> check_answers(const PassSlot& slot) {
@@ -312,7 +312,6 @@ ShaderConfig Tracer::shader_config(RayKind kind, const KernelVariant& variant) c
     config.stack_registers = variant.register_words > 0 &&
                              (config.stack_depth <= kMaxWordsInRegisters || !registers_lose_words_);
     config.branches = variant.branches;
-    config.deal_groups = variant.deal_groups;
     config.reads = variant.reads;
     config.group_size = variant.group_size;
     config.packet = packs(kind, variant) ? kPacketRays : 1;
@@ -364,16 +363,19 @@ Result<Done> Tracer::launch(PassSlot& slot) {
         glBindImageTexture(OVC_BINDING_ACTIVE, active_.id(), 0, GL_FALSE, 0, GL_WRITE_ONLY,
                            GL_R32UI);
     size_t group_rays = size_t(config.group_size) * config.packet;
-    if (config.refill)
-        group_rays *=
-            packets_a_lane(slot.sent->slots(), config.packet, slot.variant, device_.is_software);
+    size_t lane_rays = 0;
+    if (config.refill) {
+        lane_rays =
+            rays_a_lane(slot.sent->slots(), config.packet, slot.variant, device_.is_software);
+        group_rays = config.group_size * lane_rays;
+    }
     const Stopwatch watch;
     if (device_.is_software)
         driver_threads_.start();
     else
         glBeginQuery(GL_TIME_ELAPSED, slot.time.id());
     if (slot.words)
-        slot.words->dispatch(*program, slot.sent->slots(), group_rays);
+        slot.words->dispatch(*program, slot.sent->slots(), group_rays, lane_rays);
     else
         slot.pixels->draw(slot.sent->size());
     if (!device_.is_software)

@@ -49,7 +49,7 @@ struct MemoryPlan {
     uint32_t parted_rays() const { return batch_rays / 64 / kBlockRays * kBlockRays; }
     PoolLayout pool() const { return {pool_bytes, buffer_bytes}; }
     uint64_t ray_bytes() const {
-        return passes * (batch_rays * bytes_per_ray + parted_rays() * kAnswerBytes);
+        return passes * (batch_rays * bytes_per_ray + parted_rays() * kAnswerBytes + kCounterBytes);
     }
 };
 

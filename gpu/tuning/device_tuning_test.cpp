@@ -37,7 +37,6 @@ public:
         double seconds = 1e-3;
         seconds *= variant.group_size == 128 ? faster : 1;
         seconds *= variant.branches ? faster : 1;
-        seconds *= variant.deal_groups ? 1 : 1.1;
         // Now and then something else takes the cores for a while.
         const double noise = random_() % 10 == 0 ? 1.5 : 1 + 0.01 * double(random_() % 5);
         return seconds * (noisy ? noise : 1);
@@ -90,7 +89,7 @@ TEST_F(Tuning, NeverTakesOneThatIsSlowerOverATenthOfTheRunsDisturbed) {
         trials.faster = 1.04;
         found.after_pass(kKind, kLongPass, {.seconds = 10, .kind_seconds = 10}, trials);
         const KernelVariant& chosen = found.variants()[kKind];
-        EXPECT_TRUE(chosen.deal_groups && !chosen.branches && chosen.group_size != 128)
+        EXPECT_TRUE(!chosen.branches && chosen.group_size != 128)
             << "start " << start << ": " << chosen.text();
     }
 }

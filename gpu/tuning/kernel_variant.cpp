@@ -35,8 +35,6 @@ bool take_word(std::string_view word, KernelVariant& variant) {
         variant.packets = true;
     else if (word == "refill")
         variant.refill = true;
-    else if (word == "deal")
-        variant.deal_groups = true;
     else if (word == "branches" || word == "both-sides")
         variant.branches = word == "branches";
     else if (word == "array")
@@ -51,7 +49,7 @@ bool take_word(std::string_view word, KernelVariant& variant) {
 
 bool is_sound(const KernelVariant& v) {
     const bool size = v.group_size == 32 || v.group_size == 64 || v.group_size == 128;
-    return size && (v.compute || !(v.packets || v.refill || v.deal_groups));
+    return size && (v.compute || !(v.packets || v.refill));
 }
 
 } // namespace
@@ -60,7 +58,6 @@ std::string KernelVariant::text() const {
     std::string text = compute ? format_text("compute,group={}", group_size) : "fragment";
     text += packets ? ",packets" : "";
     text += refill ? ",refill" : "";
-    text += deal_groups ? ",deal" : "";
     text += branches ? ",branches" : ",both-sides";
     text += register_words ? format_text(",registers={}", register_words) : ",array";
     text += float_pairs ? ",float-pairs" : "";
@@ -74,7 +71,7 @@ Result<KernelVariant> parse_variant(std::string_view text) {
         if (!take_word(rest.substr(0, comma), variant))
             return Error{
                 format_text("'{}' is no switch of a kernel, in '{}'; there are compute, "
-                            "fragment, group=N, packets, refill, deal, branches, "
+                            "fragment, group=N, packets, refill, branches, "
                             "both-sides, registers=N, array, float-pairs, textures, images, "
                             "storage",
                             rest.substr(0, comma), text)};
@@ -83,8 +80,8 @@ Result<KernelVariant> parse_variant(std::string_view text) {
         rest.remove_prefix(comma + 1);
     }
     if (!is_sound(variant))
-        return Error{format_text("no kernel is '{}': group is 32, 64 or 128, and packets, refill "
-                                 "and deal are the compute kernel's",
+        return Error{format_text("no kernel is '{}': group is 32, 64 or 128, and packets and "
+                                 "refill are the compute kernel's",
                                  text)};
     return variant;
 }
@@ -93,17 +90,22 @@ ChosenVariants default_variants(const DeviceInfo& device, bool compute) {
     KernelVariant variant{.compute = compute};
     if (!device.is_software)
         return ChosenVariants(variant);
-    variant.packets = variant.deal_groups = compute;
+    variant.packets = compute;
     variant.refill = compute && device.can_refill();
     variant.branches = false;
     variant.register_words = kRegisterWords;
     variant.reads = TexelReads::Images;
     ChosenVariants variants(variant);
+    for (size_t kind = 0; kind < RayKind::kCount; ++kind)
+        if (RayKind::of(kind).has_portals())
+            variants[RayKind::of(kind)].reads = TexelReads::Textures;
     // Lanes that go alike end together, and taking up a ray means to go through the first portal,
     // to which rays among few frames have far to go.
-    for (const bool any_hit : {false, true})
-        variants[{.any_hit = any_hit, .frames = RayKind::Frames::Few, .coherent = true}].refill =
-            false;
+    using enum RayKind::Frames;
+    for (const bool any_hit : {false, true}) {
+        variants[{.any_hit = any_hit, .frames = Few, .coherent = true}].refill = false;
+        variants[{.any_hit = any_hit, .frames = Few}].group_size = compute ? 32 : 64;
+    }
     return variants;
 }
 
@@ -127,11 +129,10 @@ std::vector<KernelVariant> neighbours(const KernelVariant& from, const DeviceInf
     add([](KernelVariant& v) { v.branches = !v.branches; });
     add([](KernelVariant& v) { v.packets = !v.packets; });
     add([](KernelVariant& v) { v.register_words = v.register_words ? 0 : kRegisterWords; });
-    add([](KernelVariant& v) { v.deal_groups = !v.deal_groups; });
     if (other_kernel)
         add([](KernelVariant& v) {
             v.compute = !v.compute;
-            v.packets = v.refill = v.deal_groups = false;
+            v.packets = v.refill = false;
         });
     return found;
 }
@@ -146,7 +147,6 @@ KernelVariant with_changes(KernelVariant base, const KernelVariant& from,
     take(&KernelVariant::group_size);
     take(&KernelVariant::packets);
     take(&KernelVariant::refill);
-    take(&KernelVariant::deal_groups);
     take(&KernelVariant::branches);
     take(&KernelVariant::register_words);
     take(&KernelVariant::float_pairs);

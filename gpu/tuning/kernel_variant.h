@@ -24,7 +24,6 @@ struct KernelVariant {
     uint32_t group_size = 64;    // invocations
     bool packets = false;        // rays that go alike are taken two at a time
     bool refill = false;         // a lane takes the next ray when its own is done
-    bool deal_groups = false;    // neighbouring groups go to different threads
     bool branches = true;        // a step runs only the code for its kind of unit
     uint32_t register_words = 0; // of a stack in registers; 0: it is an array
     TexelReads reads = TexelReads::Textures;

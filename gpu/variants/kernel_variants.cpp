@@ -30,7 +30,6 @@ std::optional<ShaderConfig> kernel_of(uint32_t bits) {
     config.packet = take() ? 2 : 1;
     config.refill = take();
     config.branches = take();
-    config.deal_groups = take();
     const bool images = take(), storage = take();
     config.reads = storage  ? TexelReads::StorageBuffers
                    : images ? TexelReads::Images
@@ -38,7 +37,7 @@ std::optional<ShaderConfig> kernel_of(uint32_t bits) {
     config.group_size = take() ? 128 : 64;
     config.max_rounds = take() ? kMaxCountedRounds : 0x7fffffff;
     config.float_pairs = take();
-    if (!config.compute && (config.packet > 1 || config.refill || config.deal_groups))
+    if (!config.compute && (config.packet > 1 || config.refill))
         return std::nullopt;
     if ((images && storage) || (!config.compute && config.group_size != 64))
         return std::nullopt;

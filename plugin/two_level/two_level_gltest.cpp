@@ -585,8 +585,8 @@ TEST_F(TwoLevelGl, NamesTheSmallestBudgetThatWorks) {
     const auto refused = TwoLevel::build(soup, *gl, {.budget_bytes = 1024}, {});
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().message,
-              "a GPU budget of 1024 bytes is too small: the smallest that works is 40960 bytes "
-              "(24576 for rays and answers, 16384 for a page)");
+              "a GPU budget of 1024 bytes is too small: the smallest that works is 40964 bytes "
+              "(24580 for rays and answers, 16384 for a page)");
     EXPECT_TRUE(TwoLevel::build(soup, *gl, {.budget_bytes = 65536}, {}));
 }
 

@@ -146,7 +146,7 @@ TEST_F(Abi, ABudgetTooSmallNamesTheSmallest) {
     config.gpu_memory_bytes = 1024;
     ovc_scene small = nullptr;
     EXPECT_EQ(api().create_scene(device, &config, &small), OVC_ERROR_OUT_OF_BUDGET);
-    EXPECT_THAT(error(), HasSubstr("the smallest that works is 40960 bytes"));
+    EXPECT_THAT(error(), HasSubstr("the smallest that works is 40964 bytes"));
     EXPECT_EQ(small, nullptr);
 }
 
