@@ -55,8 +55,11 @@
 #ifndef OVC_PACKET
 #define OVC_PACKET 1 // rays that an invocation traces together
 #endif
-// 1: a subgroup has more rays, or packets, than lanes, and its lanes take them in turn
-// (GL_ARB_shader_ballot).
+// 1: a subgroup claims its rays from a counter (GL_ARB_shader_ballot).
+#ifndef OVC_CLAIMS
+#define OVC_CLAIMS 0
+#endif
+// 1: the lanes of a subgroup take the rays that it has claimed in turn, or packets of them.
 #ifndef OVC_REFILL
 #define OVC_REFILL 0
 #endif

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// The compute kernel: an invocation takes rays of the pass, OVC_PACKET at a time, once or with ray
-// refill.
+// The compute kernel: an invocation takes rays of the pass, OVC_PACKET at a time; those of its
+// number, or where subgroups claim rays, one after another.
 #version 450 core
 #if OVC_CERTIFY && !OVC_ANY_HIT
 #define OVC_NAMES OVC_MAX_NAMES
 #endif
 #include "layout.h"
 #include "config.glsl"
-#if OVC_REFILL
+#if OVC_CLAIMS
 #extension GL_ARB_gpu_shader_int64 : require // ballotARB() returns a 64-bit integer
 #extension GL_ARB_shader_ballot : require
 #endif
@@ -85,7 +85,7 @@ void give_names(int first, Found found[OVC_PACKET], int counts[OVC_PACKET]) {
 }
 #endif
 
-#if OVC_REFILL
+#if OVC_CLAIMS
 layout(location = OVC_LOCATION_LANE_RAYS) uniform int lane_rays;
 layout(binding = OVC_BINDING_SHARES) uniform atomic_uint shares;
 
@@ -98,29 +98,53 @@ int claim() {
     return int(readFirstInvocationARB(number));
 }
 
+// Returns a number that is at least that of each lane, the same in all lanes, and at most twice
+// the largest, or 64.
+int most_of(int rounds) {
+    int most = 64;
+    bool is_less;
+    do {
+        is_less = ballotARB(rounds > most) != 0ul;
+        most = is_less ? 2 * most : most;
+    } while (is_less);
+    return most;
+}
+
+// Traces the rays from `begin` to before `end` by the lanes of the subgroup, within max_rounds.
+// Returns how many rounds that took, the same in all lanes; never fewer than llvmpipe has counted.
+int trace_share(int begin, int end, int max_rounds) {
+#if OVC_REFILL
+    return most_of(trace_with_refill(begin, end, max_rounds));
+#else
+    int rounds = 0;
+    for (int first = begin; first < end; first += int(gl_SubGroupSizeARB) * OVC_PACKET) {
+        int ray = first + int(gl_SubGroupInvocationARB) * OVC_PACKET;
+        rounds += most_of(trace_once(ray, max_rounds - rounds));
+    }
+    return rounds;
+#endif
+}
+
 // A subgroup claims shares of the pass until there are none left. There are as many subgroups as
 // shares, each of which claims one at least; so a thread that gets less time takes fewer, instead
 // of being waited for (llvmpipe gives each thread as many groups before it begins: 5 to 11 % of the
 // time of calls).
 void trace_shares() {
     int share = int(gl_SubGroupSizeARB) * lane_rays;
-    int spent = 0; // at least as many rounds as llvmpipe has counted of the loops
+    int rounds = 0;
     bool more;
     do {
         int begin = claim() * share;
-        int rounds = spent; // lanes that end early count fewer than others
-        trace_with_refill(begin, min(begin + share, ray_count), rounds);
-        spent += OVC_MAX_ROUNDS / 8;
-        bool ends = begin + share >= ray_count || spent >= OVC_MAX_ROUNDS / 2 || rounds > spent;
-        more = ballotARB(ends) == 0ul;
+        rounds += trace_share(begin, min(begin + share, ray_count), OVC_MAX_ROUNDS - rounds);
+        more = begin + share < ray_count && rounds < OVC_MAX_ROUNDS / 2;
     } while (more);
 }
 #endif
 
 void main() {
-#if OVC_REFILL
+#if OVC_CLAIMS
     trace_shares();
 #else
-    trace_once(int(gl_GlobalInvocationID.x) * OVC_PACKET);
+    trace_once(int(gl_GlobalInvocationID.x) * OVC_PACKET, OVC_MAX_ROUNDS);
 #endif
 }

@@ -24,5 +24,5 @@ layout(location = 0) out uvec4 answer;
 void give(int ray, uvec4 words) { answer = words; }
 
 void main() {
-    trace_once(ray_at(ivec2(gl_FragCoord.xy)));
+    trace_once(ray_at(ivec2(gl_FragCoord.xy)), OVC_MAX_ROUNDS);
 }

@@ -163,21 +163,24 @@ bool are_hopeless(Found found[OVC_PACKET]) {
 }
 
 #if !OVC_REFILL
-void trace_once(int ray) {
+// Traces the rays from `ray` on that an invocation takes together. Returns how many rounds that
+// took; max_rounds: they give up after so many.
+int trace_once(int ray, int max_rounds) {
     Tree tree = tree_of(0, 0);
     Descent d = descent(tree);
     Packet packet;
     Found found[OVC_PACKET];
     int rounds = 0;
     d.done = !take_rays(ray, tree, packet, found);
-    int look = min(OVC_PATIENCE, OVC_MAX_ROUNDS); // at this round
+    int look = min(OVC_PATIENCE, max_rounds); // at this round
     bool whole, ended;
     do {
         whole = trace_on(ray, d, packet, found, look, rounds);
         ended = whole || (rounds >= look && are_hopeless(found));
-        look = rounds >= look ? min(look + OVC_PATIENCE, OVC_MAX_ROUNDS) : look;
-    } while (!ended && rounds < OVC_MAX_ROUNDS);
+        look = rounds >= look ? min(look + OVC_PATIENCE, max_rounds) : look;
+    } while (!ended && rounds < max_rounds);
     give_answers(ray, packet, found, ended && !d.lost, whole, rounds);
+    return rounds;
 }
 #else
 // Rounds between two looks at which lanes have an answer or have come to a portal; more if taking
@@ -186,11 +189,11 @@ const int OVC_REFILL_ROUNDS = OVC_PACKET > 1 ? 5 : (OVC_PORTALS != 0 ? 5 : 3);
 
 // Traces the rays from `begin` to before `end` by the lanes of a subgroup. Now and then the lanes
 // that have an answer go on to the next rays that no lane has taken, so that lanes do not wait for
-// each other. rounds: of the subgroup, counted on; never fewer than llvmpipe has counted of its
-// loops.
+// each other. Returns how many rounds that took, never fewer than llvmpipe has counted of its loops
+// while the lane had rays; max_rounds: those that are left then give up.
 // Based on: Aila and Laine 2009, "Understanding the Efficiency of Ray Traversal on GPUs" (replacing
 // terminated rays, persistent threads).
-void trace_with_refill(int begin, int end, inout int rounds) {
+int trace_with_refill(int begin, int end, int max_rounds) {
     Tree tree = tree_of(0, 0);
     Descent d = descent(tree);
     Packet packet;
@@ -198,10 +201,11 @@ void trace_with_refill(int begin, int end, inout int rounds) {
     int ray = begin + int(gl_SubGroupInvocationARB) * OVC_PACKET;
     int next = begin + int(gl_SubGroupSizeARB) * OVC_PACKET; // the same in all lanes
     uint lanes_before = (1u << gl_SubGroupInvocationARB) - 1u;
-    int looks = 0;  // since the lane took its rays
+    int rounds = 0;
+    int looks = 0; // since the lane took its rays
     d.done = !take_rays(ray, tree, packet, found);
     while (ray < end) {
-        bool enough = rounds >= OVC_MAX_ROUNDS;
+        bool enough = rounds >= max_rounds;
         int own = 0;
         bool whole = trace_on(ray, d, packet, found, enough ? 1 : OVC_REFILL_ROUNDS, own);
         rounds += OVC_REFILL_ROUNDS + 1;
@@ -223,5 +227,6 @@ void trace_with_refill(int begin, int end, inout int rounds) {
         rounds += uint(ballotARB(named)) != 0u ? OVC_PACKET * OVC_NAMES : 1;
 #endif
     }
+    return rounds;
 }
 #endif

@@ -159,8 +159,9 @@ std::string spread(std::vector<double> ratios) {
     return fmt::format("{:.3f} ({:.3f} to {:.3f})", at(0.5), at(0.25), at(0.75));
 }
 
+/// only: a kind of rays; empty: all.
 Result<Done> run(const char* before, const char* after, const std::string& name, size_t count,
-                 int repeats) {
+                 int repeats, std::string_view only) {
     const Result<Scene> scene = open_scene(name, standard_error_log(LogLevel::Warning));
     if (!scene)
         return scene.error();
@@ -177,6 +178,8 @@ Result<Done> run(const char* before, const char* after, const std::string& name,
     const std::vector<ovc_ray> edges = edge_rays(scene->soup, primary, hits[0]);
 
     const auto compare = [&](const char* what, size_t rays, auto&& call, const auto& answers) {
+        if (rays == 0 || (!only.empty() && only != what))
+            return;
         std::vector<double> ratios, cpu_ratios;
         std::array<std::vector<double>, 2> cpu;
         for (int i = 0; i < repeats + 2; ++i) {
@@ -204,9 +207,8 @@ Result<Done> run(const char* before, const char* after, const std::string& name,
         "diffuse", count, [&](size_t s) { sides[s].intersect(bounced, hits[s]); }, hits);
     compare(
         "occlusion", count, [&](size_t s) { sides[s].occluded(bounced, occluded[s]); }, occluded);
-    if (!edges.empty())
-        compare(
-            "edges", edges.size(), [&](size_t s) { sides[s].intersect(edges, hits[s]); }, hits);
+    compare(
+        "edges", edges.size(), [&](size_t s) { sides[s].intersect(edges, hits[s]); }, hits);
     return Done{};
 }
 
@@ -217,21 +219,24 @@ int main(int count, char** arguments) {
     std::vector<const char*> names;
     size_t rays = 1 << 18;
     int repeats = 101;
+    std::string_view only;
     for (int i = 1; i < count; ++i) {
         const std::string argument = arguments[i];
         if (argument == "--rays" && i + 1 < count)
             rays = std::max<size_t>(std::strtoull(arguments[++i], nullptr, 10), 1);
         else if (argument == "--repeats" && i + 1 < count)
             repeats = std::max(std::atoi(arguments[++i]), 1);
+        else if (argument == "--only" && i + 1 < count)
+            only = arguments[++i];
         else
             names.push_back(arguments[i]);
     }
     if (names.size() != 3) {
-        fmt::print(stderr,
-                   "Usage: paired_calls BEFORE.so AFTER.so SCENE [--rays N] [--repeats N]\n");
+        fmt::print(stderr, "Usage: paired_calls BEFORE.so AFTER.so SCENE [--rays N] [--repeats N] "
+                           "[--only primary|diffuse|occlusion|edges]\n");
         return 1;
     }
-    const auto done = ovc::run(names[0], names[1], names[2], rays, repeats);
+    const auto done = ovc::run(names[0], names[1], names[2], rays, repeats, only);
     if (!done)
         fmt::print(stderr, "paired_calls: {}\n", done.error().message);
     return done ? 0 : 1;

@@ -145,6 +145,7 @@ std::string ShaderConfig::defines() const {
                        "#define OVC_STACK_DEPTH {}\n"
                        "#define OVC_STACK_REGISTERS {}\n"
                        "#define OVC_PACKET {}\n"
+                       "#define OVC_CLAIMS {}\n"
                        "#define OVC_REFILL {}\n"
                        "#define OVC_BRANCHES {}\n"
                        "#define OVC_READS {}\n"
@@ -153,7 +154,7 @@ std::string ShaderConfig::defines() const {
                        "#define OVC_COUNTS {}\n",
                        any_hit, certify, portals, float_pairs, far_triangles, may_wait, tell_active,
                        loose_pairs, pool_buffers, each_buffer, buffer_bits, stack_depth,
-                       stack_registers, packet, refill, branches, int(reads), group_size,
+                       stack_registers, packet, claims, refill, branches, int(reads), group_size,
                        max_rounds, counts);
 }
 

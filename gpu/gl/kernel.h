@@ -35,7 +35,8 @@ struct ShaderConfig {
     uint32_t stack_depth = 16;
     bool stack_registers = true;
     uint32_t packet = 1; // rays that an invocation traces together
-    bool refill = false; // a lane takes the next packet when its own is done
+    bool claims = false; // subgroups claim their rays from a counter
+    bool refill = false; // a lane takes the next packet when its own is done; with claims
     bool branches = false;
     TexelReads reads = TexelReads::Images;
     uint32_t group_size = 64;         // of the compute kernel

@@ -20,7 +20,7 @@ TEST(ShaderSource, IncludesAreReplacedAndDefinesFollowTheVersion) {
         expand_shader("trace.frag.glsl", ShaderConfig{.any_hit = true}.defines(), files);
     ASSERT_TRUE(source);
     EXPECT_THAT(*source, Not(HasSubstr("#include")));
-    EXPECT_THAT(*source, HasSubstr("void trace_once("));
+    EXPECT_THAT(*source, HasSubstr("int trace_once("));
     EXPECT_LT(source->find("#version"), source->find("#define OVC_ANY_HIT 1"));
     EXPECT_LT(source->find("#define OVC_ANY_HIT 1"), source->find("#ifndef OVC_ANY_HIT"));
     EXPECT_THAT(files,

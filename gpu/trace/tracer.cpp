@@ -22,13 +22,13 @@ constexpr uint32_t kMaxBlocksInSoftware = 512; // fewer, as llvmpipe clears the 
 constexpr uint32_t kMaxWordsInRegisters = 32;  // Workaround::ShortRegisterStack
 constexpr size_t kMaxLostShare =
     256; // if more than one ray in so many is lost, kernels go on longer
-// With ray refill: the max rays of a lane in a share, if there are some shares for each thread.
-constexpr size_t kLaneRays = 64;
+// The max rays of a lane in a share, if there are some shares for each thread.
+constexpr size_t kLaneRays = 128;
 constexpr size_t kGroupsAThread = 4;
 constexpr size_t kLanesOfGpu = 65536;     // as many as a large GPU runs at once
 constexpr uint64_t kSmallestPool = 16384; // a page of some hundred triangles
 
-/// Returns how many rays a subgroup claims for each lane, with ray refill: whole packets.
+/// Returns how many rays a subgroup claims for each lane: whole packets.
 size_t rays_a_lane(size_t rays, size_t packet, const KernelVariant& variant, bool software) {
     static_assert(kBlockRays % (OVC_MAX_GROUP_SIZE * kPacketRays) == 0); // no packet across groups
     const size_t lanes =
@@ -315,8 +315,15 @@ ShaderConfig Tracer::shader_config(RayKind kind, const KernelVariant& variant) c
     config.reads = variant.reads;
     config.group_size = variant.group_size;
     config.packet = packs(kind, variant) ? kPacketRays : 1;
-    config.refill = variant.refill && !never_refills_;
+    config.claims = claims(variant);
+    config.refill = config.claims && variant.refill;
     return config;
+}
+
+/// Whether subgroups claim their rays. A GPU gives groups to whatever part of it is free.
+bool Tracer::claims(const KernelVariant& variant) const {
+    return variant.compute && !gives_rays_all_rounds_ &&
+           (variant.refill || (device_.is_software && device_.can_refill()));
 }
 
 Result<Tracer::Pass> Tracer::submit(SentRays& rays) {
@@ -364,7 +371,7 @@ Result<Done> Tracer::launch(PassSlot& slot) {
                            GL_R32UI);
     size_t group_rays = size_t(config.group_size) * config.packet;
     size_t lane_rays = 0;
-    if (config.refill) {
+    if (config.claims) {
         lane_rays =
             rays_a_lane(slot.sent->slots(), config.packet, slot.variant, device_.is_software);
         group_rays = config.group_size * lane_rays;
@@ -455,7 +462,7 @@ bool Tracer::lost_many(const Answers& answers, size_t rays) {
 bool Tracer::go_on_longer(const KernelVariant& variant) {
     if (stack_words(variant) < stack_depth_)
         return long_stacks_ = true;
-    return variant.refill && !std::exchange(never_refills_, true);
+    return claims(variant) && !std::exchange(gives_rays_all_rounds_, true);
 }
 
 bool Tracer::are_passes_under_way() const {

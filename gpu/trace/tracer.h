@@ -162,6 +162,7 @@ private:
     bool may_wait() const { return !all_fit_; }
     bool takes_float_pairs() const;
     ShaderConfig shader_config(RayKind kind, const KernelVariant& variant) const;
+    bool claims(const KernelVariant& variant) const;
     static bool packs(RayKind kind, const KernelVariant& variant) {
         return variant.packets && kind.coherent && !kind.has_portals();
     }
@@ -184,7 +185,7 @@ private:
     const DeviceInfo device_;
     RayKind kind_;                                  // of the pass that was collected last
     bool long_stacks_ = false;                      // eight words were too few
-    bool never_refills_ = false;                    // rays need all rounds that there are
+    bool gives_rays_all_rounds_ = false;            // rays need all rounds that there are
     mutable std::optional<bool> keeps_float_pairs_; // the driver; asked when somebody wants to know
     const bool counts_rounds_ = needs(Workaround::CountedRounds);
     const bool registers_lose_words_ = needs(Workaround::ShortRegisterStack);

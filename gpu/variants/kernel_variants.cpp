@@ -28,6 +28,7 @@ std::optional<ShaderConfig> kernel_of(uint32_t bits) {
     config.stack_depth = take() ? 40 : 8;
     config.stack_registers = take();
     config.packet = take() ? 2 : 1;
+    config.claims = take();
     config.refill = take();
     config.branches = take();
     const bool images = take(), storage = take();
@@ -37,7 +38,9 @@ std::optional<ShaderConfig> kernel_of(uint32_t bits) {
     config.group_size = take() ? 128 : 64;
     config.max_rounds = take() ? kMaxCountedRounds : 0x7fffffff;
     config.float_pairs = take();
-    if (!config.compute && (config.packet > 1 || config.refill))
+    if (!config.compute && (config.packet > 1 || config.claims))
+        return std::nullopt;
+    if (config.refill && !config.claims)
         return std::nullopt;
     if ((images && storage) || (!config.compute && config.group_size != 64))
         return std::nullopt;

@@ -58,7 +58,7 @@ ovc::Steps replay_slot(std::span<const ovc::uvec4> pool_texels, std::span<const 
     steps = &found;
     first_ray = int(first);
     units_fetched = 0;
-    trace_once(int(first));
+    trace_once(int(first), OVC_MAX_ROUNDS);
     return found;
 }
 
