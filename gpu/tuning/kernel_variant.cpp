@@ -100,12 +100,11 @@ ChosenVariants default_variants(const DeviceInfo& device, bool compute) {
         if (RayKind::of(kind).has_portals())
             variants[RayKind::of(kind)].reads = TexelReads::Textures;
     // Lanes that go alike end together, and taking up a ray means to go through the first portal,
-    // to which rays among few frames have far to go.
+    // to which rays among few frames have far to go, unless any hit ends them.
     using enum RayKind::Frames;
-    for (const bool any_hit : {false, true}) {
-        variants[{.any_hit = any_hit, .frames = Few, .coherent = true}].refill = false;
+    variants[{.frames = Few, .coherent = true}].refill = false;
+    for (const bool any_hit : {false, true})
         variants[{.any_hit = any_hit, .frames = Few}].group_size = compute ? 32 : 64;
-    }
     return variants;
 }
 
