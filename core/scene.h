@@ -252,6 +252,9 @@ struct Light {
     /// What is nearer to the light than this throws no shadow, such as what it lies on.
     double clearance = 0;
     uint32_t group = kNone; // of lights and meshes; kNone: shines on all that LitBy lets it
+    /// An object that is not seen, as POV-Ray's projected_through: only light whose way goes
+    /// through its surface arrives, and only what lies between there and the place casts shadows.
+    std::optional<Region> projector;
 };
 
 /// The image is a window at the end of `direction` from the eye, `right` wide and `up` high

@@ -23,7 +23,7 @@ void each_field(auto& io, Some<SlopeStop> auto& s) {
 }
 
 void each_field(auto& io, Some<Bump> auto& b) {
-    io(b.kind, b.amount, b.accuracy, b.pattern, b.profile, b.parts);
+    io(b.kind, b.amount, b.accuracy, b.keeps_depth, b.pattern, b.profile, b.parts);
 }
 
 void each_field(auto& io, Some<FormulaStep> auto& s) {
@@ -136,7 +136,7 @@ void each_field(auto& io, Some<LightBeam> auto& b) {
 void each_field(auto& io, Some<Light> auto& l) {
     io(l.position, l.color, l.shadow_offset, l.clearance, l.group, l.on_camera, l.direction, l.cone,
        l.beam, l.parallel, l.shadowless, l.lights_media, l.fades_in_air, l.fade_distance,
-       l.fade_power, l.stand_in);
+       l.fade_power, l.stand_in, l.projector);
 }
 
 void each_field(auto& io, Some<ImageWindow> auto& w) {

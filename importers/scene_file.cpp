@@ -28,7 +28,7 @@ namespace {
 constexpr std::string_view kKind = "ovc scene";
 /// Raise it with every change of scene_fields.h, and when an importer makes another scene of the
 /// same file.
-constexpr uint32_t kVersion = 16;
+constexpr uint32_t kVersion = 17;
 
 /// The checksums of the blocks (core/file/file_blocks.h) of corners, normals and texture
 /// coordinates.
@@ -157,6 +157,9 @@ bool is_sound(const Scene& scene) {
         return false;
     if (!(scene.exposure > 0))
         return false;
+    for (const Light& light : scene.lights)
+        if (light.projector && !light.projector->triangles.is_sound())
+            return false;
     for (const Material& material : scene.materials)
         if (material.optics && material.optics->boundary > Optics::Boundary::Thin)
             return false;

@@ -4,6 +4,7 @@
 
 #include "core/scene.h"
 #include "core/texture/fractal.h"
+#include "core/texture/tiles/tiling.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,9 +19,9 @@ inline bool is_sound(const Pattern& pattern) {
     const auto finite = [](double x) { return std::isfinite(x); };
     const bool steps =
         std::all_of(pattern.steps.begin(), pattern.steps.end(), [](const TextureStep& step) {
-            return step.kind <= TextureStep::Kind::BoxNet &&
+            return step.kind <= TextureStep::Kind::Cubic &&
                    (step.kind < TextureStep::Kind::Cylindrical ||
-                    step.kind == TextureStep::Kind::BoxNet ||
+                    step.kind >= TextureStep::Kind::BoxNet ||
                     (step.rows[0].x >= 0 && step.rows[0].x <= 2)) &&
                    (step.kind != TextureStep::Kind::Turbulence ||
                     (step.rows[1].y >= 0 && step.rows[1].y <= double(kMaxOctaves)));
@@ -32,7 +33,9 @@ inline bool is_sound(const Pattern& pattern) {
     const bool fractal = pattern.kind != Pattern::Kind::Fractal ||
                          std::all_of(pattern.parameters.begin(), pattern.parameters.end(),
                                      [](double x) { return std::abs(x) <= kMaxFractalIterations; });
-    return steps && small && cells == grid.values.size() && fractal &&
+    const bool tiled = pattern.kind != Pattern::Kind::Tiling ||
+                       (pattern.parameters[0] >= 1 && pattern.parameters[0] <= double(kTilings));
+    return steps && small && cells == grid.values.size() && fractal && tiled &&
            pattern.region.triangles.is_sound() && pattern.kind <= Pattern::Kind::Triangular &&
            pattern.wave <= Pattern::Wave::None && pattern.noise >= NoiseKind::Original &&
            pattern.noise <= NoiseKind::Perlin && pattern.octaves.count <= kMaxOctaves &&

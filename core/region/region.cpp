@@ -116,4 +116,22 @@ bool Region::contains(const dvec3& point) const {
     return surrounding > 0;
 }
 
+double Region::first_crossing(const dvec3& from, const dvec3& way, double min_t) const {
+    double first = std::numeric_limits<double>::infinity();
+    const auto meet = [&](double t) {
+        if (t > min_t && t < first)
+            first = t;
+    };
+    for (const HalfSpace& half : half_spaces)
+        meet((half.distance - glm::dot(half.normal, from)) / glm::dot(half.normal, way));
+    for (const PlacedRound& round : rounds)
+        for_each_meeting(round.shape, round.there(from, 1), round.there(way, 0),
+                         [&](const RoundMeeting& at) { meet(at.t); });
+    triangles.for_each_near(from, way, first, [&](size_t triangle) {
+        if (const auto at = crossing(&triangles.corners[3 * triangle], from, way))
+            meet(at->t);
+    });
+    return first;
+}
+
 } // namespace ovc

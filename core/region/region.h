@@ -74,6 +74,9 @@ struct Region {
     std::vector<HalfSpace> half_spaces;
 
     bool contains(const dvec3& point) const;
+    /// Returns the t > min_t at which the line `from` + t `way` first meets a surface of a part;
+    /// infinity: nowhere.
+    double first_crossing(const dvec3& from, const dvec3& way, double min_t) const;
     /// Boxes follow from corners.
     bool operator==(const Region& other) const {
         return triangles.corners == other.triangles.corners && inverted == other.inverted &&

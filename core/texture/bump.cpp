@@ -191,11 +191,12 @@ dvec3 tilted_normal(const Around& around, const Bump& bump) {
     const double length = glm::length(there);
     if (!(length > 0) || !std::isfinite(length))
         return around.normal;
+    const dvec3 untilted = bump.keeps_depth ? there : there / length;
     const dvec3 tilted =
         bump.kind == Bump::Kind::Facets
             ? faceted(pattern, evaluate(around.textures, pattern, point_of(around, bump)).at.at,
                       there / length)
-            : there / length + bump.amount * tilt(around, bump);
+            : untilted + bump.amount * tilt(around, bump);
     const dvec3 back = rows * tilted;
     const double size = glm::length(back);
     return size > 0 && std::isfinite(size) ? back / size : around.normal;

@@ -49,8 +49,10 @@ struct Bump {
 
     Kind kind = Kind::Height;
     double amount = 0.5;
-    double accuracy = 0.02; // how far apart Height looks at the pattern, in its space; above 0
-    PlacedTexture pattern;  // only the pattern of the texture and the values of its stops matter
+    double accuracy = 0.02;   // how far apart Height looks at the pattern, in its space; above 0
+    bool keeps_depth = false; // the tilt is over the size of the pattern, which is scaled
+                              // (POV-Ray's no_bump_scale)
+    PlacedTexture pattern;    // only the pattern of the texture and the values of its stops matter
     std::vector<SlopeStop> profile; // of Height: turns values into heights; none: they are heights
     std::vector<uint32_t> parts;    // of Mix: indices into Scene::bumps, below that of this one
 

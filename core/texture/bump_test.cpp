@@ -95,6 +95,21 @@ TEST(Bump, TiltsNormalsAsPovrayDoes) {
         }
 }
 
+TEST(Bump, MayKeepItsDepthWhereItsPatternIsScaled) {
+    std::vector<Texture> textures{{{.kind = Kind::Leopard}, {{}}}};
+    Bump half{.amount = 0.8};
+    half.pattern.to_texture = {dvec4(2, 0, 0, 0), dvec4(0, 2, 0, 0), dvec4(0, 0, 2, 0)};
+    Bump deeper = half;
+    half.keeps_depth = true;
+    deeper.amount *= 2;
+    const auto normal = [&](const Bump& bump) {
+        return bumped(textures, {}, bump, {0.4, 0.3, 0.2}, {0, 0, -1}, {0, 0, 1});
+    };
+    EXPECT_LT(glm::length(normal(half) - normal(deeper)), 1e-12);
+    EXPECT_LT(normal(half).z, 0);
+    EXPECT_GT(normal(half).z, -1);
+}
+
 TEST(Bump, MixesNormalsAsPovrayDoes) {
     const struct {
         const char* name;

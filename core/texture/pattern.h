@@ -61,7 +61,8 @@ struct Between {
     double share;
 };
 
-/// Returns where `value` lies among `count` > 0 stops, whose values are at(0) <= at(1) <= ….
+/// Returns where `value` lies among `count` > 0 stops, whose values are at(0) <= at(1) <= …. At the
+/// value of several stops it is the first of them, or at the end of all the last, as for POV-Ray.
 /// discrete: the value is a stop's number instead.
 template <class At>
 Between between(size_t count, const At& at, double value, bool discrete) {
@@ -69,11 +70,13 @@ Between between(size_t count, const At& at, double value, bool discrete) {
         const size_t i = size_t(value) % count;
         return {i, i, 0};
     }
+    if (value >= at(count - 1))
+        return {count - 1, count - 1, 0};
     size_t next = 0;
-    while (next < count && at(next) <= value)
+    while (next < count && at(next) < value)
         ++next;
-    if (next == 0 || next == count)
-        return {next == 0 ? 0 : count - 1, next == 0 ? 0 : count - 1, 0};
+    if (next == 0 || next == count) // before the first, or no number
+        return {0, 0, 0};
     return {next - 1, next, (value - at(next - 1)) / (at(next) - at(next - 1))};
 }
 

@@ -129,6 +129,18 @@ const AskedValues kAsked[] = {
     {"spiral1 3",
      Pattern{.kind = Kind::Spiral1, .parameters = {3}, .wave = Wave::Triangular},
      {0.436471446, 0.288712851, 0.605489599, 0.798066204}},
+    {"spiral1 5 turbulence <0.2, 0.5, 0.3>",
+     Pattern{.kind = Kind::Spiral1,
+             .parameters = {5},
+             .wave = Wave::Triangular,
+             .turbulence = {0.2, 0.5, 0.3}},
+     {0.00256386, 0.86496232, 0.21280363, 0.78377458}},
+    {"spiral2 3 turbulence 0.2",
+     Pattern{.kind = Kind::Spiral2,
+             .parameters = {3},
+             .wave = Wave::Triangular,
+             .turbulence = dvec3(0.2)},
+     {0.42352715, 0.58992447, 0.87208731, 0.60653044}},
     {"brick", Pattern{.kind = Kind::Brick, .parameters = {8, 3, 4.5, 0.5}}, {1, 1, 0, 0}},
     {"hexagon", Pattern{.kind = Kind::Hexagon}, {0, 2, 1, 0}},
     {"cubic", Pattern{.kind = Kind::Cubic}, {1, 1, 5, 2}},
@@ -231,13 +243,29 @@ TEST(Pattern, WrapsPlanesAsPovrayDoes) {
                   {Step::Toroidal, {2, 0, 1}, {0.3179, 0.6218, 0.2888}},
                   {Step::Toroidal, {2, 1, 1}, {0.0918, 0.1795, 0.2888}},
                   {Step::Planar, {1, 0, 0}, {-0.5, 0, 0.2}},
-                  {Step::Planar, {0, 0, 2}, {2, 0.2, 0.5}}};
+                  {Step::Planar, {0, 0, 2}, {2, 0.2, 0.5}},
+                  {Step::Cubic, {0, 0, 0}, {0.3182, 0.5303, 1.1}}};
     for (const auto& asked : kAsked) {
         const TextureStep step{asked.kind, {dvec4(asked.numbers, 0), dvec4(0), dvec4(0)}};
         const dvec3 found = warped(step, {-0.5, 0.2, 1.1});
         EXPECT_LT(glm::length(found - asked.expected), 2e-4)
             << int(asked.kind) << ": " << found.x << " " << found.y << " " << found.z;
     }
+}
+
+TEST(Texture, TakesTheFirstOfStopsAtItsValue) {
+    // As povray 3.7.0.10: the last only at the end of the map.
+    const auto color = [](double value, double last) {
+        Pattern pattern{.kind = Kind::Function, .wave = Pattern::Wave::None};
+        pattern.formula = {{{FormulaStep::Kind::Constant, 0, 0, value}}, {1}};
+        const std::vector<Texture> textures{
+            {pattern,
+             {{0, {vec3(0)}}, {0.25, {vec3(0.5f)}}, {0.25, {vec3(0.7f)}}, {last, {vec3(1)}}}}};
+        return color_at(textures, 0, dvec3(0)).rgb.x;
+    };
+    EXPECT_EQ(color(0.25, 1), 0.5f);
+    EXPECT_EQ(color(0.25, 0.25), 1);
+    EXPECT_EQ(color(0, 1), 0);
 }
 
 TEST(Texture, MixesTheStopsOfItsMap) {

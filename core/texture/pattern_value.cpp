@@ -6,6 +6,7 @@
 #include "core/texture/fractal.h"
 #include "core/texture/noise/perlin.h"
 #include "core/texture/noise/random_cells.h"
+#include "core/texture/tiles/tiling.h"
 
 #include <algorithm>
 #include <cmath>
@@ -76,9 +77,13 @@ double radial(const dvec3& at) {
     return at.x == 0 && at.z == 0 ? 0 : std::atan2(at.x, at.z) / (2 * std::numbers::pi) + 0.75;
 }
 
+/// Turbulence, which has moved the place already, is added once more.
 double spiral(const Pattern& pattern, const dvec3& at) {
     const double turn = std::atan2(at.y, at.x) / (2 * std::numbers::pi) + 0.25;
-    return std::hypot(at.x, at.y) + at.z + pattern.parameters[0] * turn;
+    const double amount = pattern.turbulence.x;
+    const double shaken =
+        amount == 0 ? 0 : amount * scalar_turbulence(at, pattern.octaves, pattern.noise);
+    return std::hypot(at.x, at.y) + at.z + pattern.parameters[0] * turn + shaken;
 }
 
 /// parameters: see Pattern::Kind. Values beyond 1 are 1.
@@ -275,6 +280,8 @@ double continuous_value(std::span<const Texture> textures, const Pattern& patter
         return spiral(pattern, at);
     case Kind::Spiral2:
         return double_spiral(pattern, at);
+    case Kind::Tiling:
+        return tiling(size_t(pattern.parameters[0]), at);
     case Kind::Waves:
         return waves(pattern, at);
     case Kind::Wood:

@@ -39,6 +39,7 @@ struct TextureStep {
         Toroidal,
         Planar,
         BoxNet, // unfolds the surface of the box from -1 to 1 into the unit square
+        Cubic,  // the same of cubes of all sizes, of which z becomes the half width
     };
     Kind kind = Kind::Affine;
     std::array<dvec4, 3> rows{dvec4(1, 0, 0, 0), dvec4(0, 1, 0, 0), dvec4(0, 0, 1, 0)};
@@ -86,6 +87,7 @@ struct Pattern {
         Spherical,
         Spiral1, // parameters: the number of arms
         Spiral2, // likewise
+        Tiling,  // parameters: its number (tiling.h)
         Waves,   // parameters: as Ripples
         Wood,
         Wrinkles,

@@ -106,6 +106,10 @@ dvec3 warped(const TextureStep& step, const dvec3& at) {
         return wrapped(step, at);
     case TextureStep::Kind::BoxNet:
         return unfolded(at);
+    case TextureStep::Kind::Cubic: {
+        const double half = max_component(glm::abs(at));
+        return unfolded(at / half) + dvec3(0, 0, half);
+    }
     default:
         return affine(step, at);
     }

@@ -36,7 +36,7 @@ static vec3 reflected_share(const SurfacePoint& surface) {
     if (finish.reflection == vec3(0) && finish.grazing_reflection == vec3(0))
         return vec3(0);
     const double cosine = std::abs(glm::dot(surface.view, surface.normal));
-    const double inside = surface.material->ior;
+    const double inside = surface.material->ior / surface.ior_around;
     const double grazing = finish.fresnel
                                ? fresnel_share(cosine, surface.entering ? inside : 1 / inside)
                                : std::pow(1 - cosine, double(finish.reflection_falloff));

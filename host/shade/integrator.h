@@ -10,12 +10,37 @@
 #include "host/film/film.h"
 #include "host/shade/cone.h"
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <span>
 
 namespace ovc {
 
 enum class RayKind : uint8_t { Camera, Reflection, Refraction, Bounce };
+
+/// The materials of the solids that a ray has entered and not left, as far as its path has seen.
+/// Of more than four it forgets the outermost.
+class Solids {
+public:
+    /// Returns the one that was entered last; kNone: the ray is in none.
+    uint32_t innermost() const { return materials_.front(); }
+    void enter(uint32_t material) {
+        std::rotate(materials_.begin(), materials_.end() - 1, materials_.end());
+        materials_.front() = material;
+    }
+    /// Does nothing where the ray has not entered the material.
+    void leave(uint32_t material) {
+        const auto left = std::find(materials_.begin(), materials_.end(), material);
+        if (left == materials_.end())
+            return;
+        std::rotate(left, left + 1, materials_.end());
+        materials_.back() = kNone;
+    }
+
+private:
+    std::array<uint32_t, 4> materials_{kNone, kNone, kNone, kNone}; // the last entered comes first
+};
 
 /// The purpose of a ray that looks for the nearest surface.
 struct Path {
@@ -33,6 +58,7 @@ struct Path {
     Cone cone = {};
     /// The material in whose media the ray is, as far as the path has seen; kNone: in none.
     uint32_t inside = kNone;
+    Solids within = {};
 };
 
 /// The purpose of a shadow ray, which reaches the light, or a point of it, at t = 1.

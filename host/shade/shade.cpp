@@ -204,6 +204,18 @@ static double share_of_beam(const LightBeam& beam, double off_axis) {
     return std::pow(1 - off_axis / beam.falloff, beam.tightness) * edge;
 }
 
+/// Returns the t at which a shadow ray ends: at its light, whose clearance is free of shadows, or
+/// before at the surface that the light is projected through; 0 where it misses that.
+static double end_of_shadow_ray(const Light& light, const dvec3& from, const dvec3& way) {
+    constexpr double kMinDistance = 1e-6; // for a place on the surface itself
+    const double length = glm::length(way);
+    const double end = length > light.clearance ? 1 - light.clearance / length : 0;
+    if (!light.projector)
+        return end;
+    const double met = light.projector->first_crossing(from, way, kMinDistance / length);
+    return met <= 1 ? std::min(met, end) : 0;
+}
+
 /// Returns the share of the light's color that is left where `there` leads from to the light: after
 /// its cone, its beam and its fall-off, as in POV-Ray 3.7. towards: the light's direction.
 static double attenuation(const Light& light, const dvec3& there, const dvec3& towards,
@@ -230,6 +242,8 @@ FromLight light_at(const Light& light, const dvec3& position) {
     const dvec3 there = towards_light(light, position);
     const double distance = glm::length(there);
     const dvec3 towards = distance > 0 ? there / distance : dvec3(0);
+    if (light.projector && end_of_shadow_ray(light, position, there + light.shadow_offset) == 0)
+        return {towards, vec3(0)};
     return {towards,
             light.color * float(attenuation(light, light.position - position, towards, distance))};
 }
@@ -264,8 +278,7 @@ vec3 direct_light(const Light& light, const SurfacePoint& surface) {
 
 Ray shadow_ray(const Light& light, const dvec3& position) {
     const dvec3 there = towards_light(light, position) + light.shadow_offset;
-    const double length = glm::length(there);
-    return {position, 0, there, length > light.clearance ? 1 - light.clearance / length : 0};
+    return {position, 0, there, end_of_shadow_ray(light, position, there)};
 }
 
 Branches branches(const SurfacePoint& surface, bool total) {
@@ -303,8 +316,8 @@ Ray mirror_ray(const Ray& ray, const SurfacePoint& surface) {
 }
 
 std::optional<Ray> refracted_ray(const Ray& ray, const SurfacePoint& surface) {
-    const double inside = surface.material->ior;
-    const double from = surface.entering ? 1 : inside, to = surface.entering ? inside : 1;
+    const double inside = surface.material->ior, around = surface.ior_around;
+    const double from = surface.entering ? around : inside, to = surface.entering ? inside : around;
     const bool seen = glm::dot(ray.dir, surface.normal) < 0;
     const auto below = [&](const dvec3& dir) {
         return glm::dot(dir, surface.geometric_normal) < 0;

@@ -38,7 +38,8 @@ struct SurfacePoint {
     float opacity = 1; // multiplies ambient and diffuse light; 1 where the finish is dimmed already
     vec3 through{0};   // with a finish: the share of light that goes through here, for each color
     MapValues maps;
-    bool entering; // the ray came from outside, from where the corners run counterclockwise
+    bool entering;         // the ray came from outside, from where the corners run counterclockwise
+    double ior_around = 1; // the index of refraction of what the surface's solid lies in
     LitBy lit_by;
     /// The parts of a material that is layered or mixed; else empty. `color` is then their mean.
     std::vector<Coat> coats;
@@ -79,7 +80,7 @@ FromLight light_at(const Light& light, const dvec3& position);
 /// light is behind it.
 vec3 direct_light(const Light& light, const SurfacePoint& surface);
 
-/// Returns the ray from `position` to the light, which is at t = 1.
+/// Returns the ray from `position` to the light, which is at t = 1, up to where it casts shadows.
 Ray shadow_ray(const Light& light, const dvec3& position);
 
 /// The shares, for each color, of the light that the rays leaving a surface bring, and the shares

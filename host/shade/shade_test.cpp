@@ -196,6 +196,20 @@ TEST(ShadowRay, EndsBeforeWhatTheLightLiesOn) {
     EXPECT_EQ(shadow_ray(light, {0, 10, 0}).t_max, 0);
 }
 
+TEST(ShadowRay, EndsWhereTheLightIsProjectedThrough) {
+    Light light{{0, 10, 0}, vec3(1)};
+    PlacedRound ball{{.base = {0, 5, 0}, .radius = 1}, {}};
+    ball.to_shape = {dvec4(1, 0, 0, 0), dvec4(0, 1, 0, 0), dvec4(0, 0, 1, 0)};
+    light.projector = Region{.rounds = {ball}};
+    EXPECT_NEAR(shadow_ray(light, dvec3(0)).t_max, 0.4, 1e-12);
+    EXPECT_NEAR(shadow_ray(light, {0, 5, 0}).t_max, 0.2, 1e-12) << "from inside";
+    EXPECT_EQ(light_at(light, dvec3(0)).color, vec3(1));
+    EXPECT_EQ(light_at(light, {4, 0, 0}).color, vec3(0)) << "beside it";
+    EXPECT_EQ(light_at(light, {0, 7, 0}).color, vec3(0)) << "above it";
+    light.shadow_offset = {6, 0, 0};
+    EXPECT_EQ(light_at(light, dvec3(0)).color, vec3(0)) << "of this point of the area";
+}
+
 TEST(ShadowRay, EndsAtTheLight) {
     const SurfacePoint s = surface_point(floor_scene(), kFromAbove, kShadedHit);
     const Light light{{3, 4, 5}, vec3(1)};

@@ -233,6 +233,15 @@ Whitted::Met Whitted::meet(const Ray& ray, const Path& path, const Hit& hit,
     Met met{surface_point(scene_, ray, hit, path.cone), hit.id, path.pixel, path.sample,
             path.weight};
     const Cone cone{path.cone.width_at(hit.t * glm::length(ray.dir)), path.cone.spread};
+    const uint32_t material = scene_.meshes[hit.id.mesh].material;
+    // What lies around the surface's solid, from where or to where a ray goes through it.
+    Solids around = path.within;
+    if (!met.surface.entering)
+        around.leave(material);
+    if (around.innermost() != kNone)
+        met.surface.ior_around = scene_.materials[around.innermost()].ior;
+    for (Coat& coat : met.surface.coats)
+        coat.surface.ior_around = met.surface.ior_around;
     const vec3 arriving = path.weight * share_kept(ray, met.surface);
     met.weight = arriving;
     const bool clear = lets_light_through(met.surface);
@@ -246,17 +255,21 @@ Whitted::Met Whitted::meet(const Ray& ray, const Path& path, const Hit& hit,
             return;
         met.weight -= arriving * taken;
         const bool reflected = path.reflected || kind == RayKind::Reflection;
+        Solids within = kind == RayKind::Reflection ? path.within : around;
+        if (kind == RayKind::Refraction && met.surface.entering &&
+            material < scene_.materials.size())
+            within.enter(material);
         spawned.paths.push(child(), hit.id,
                            {path.pixel, path.sample, uint16_t(path.depth + deeper), kind, reflected,
                             /* scattered= */ false, weight, path.density, path.behind, cone,
-                            inside_behind(path, met, kind == RayKind::Refraction)});
+                            inside_behind(path, met, kind == RayKind::Refraction), within});
     };
     follow(parts.mirror, parts.taken_by_mirror, RayKind::Reflection, 1,
            [&] { return mirror_ray(ray, met.surface); });
     // A ray that goes straight on is no step deeper, as in POV-Ray: a line has only so many
     // surfaces.
     follow(parts.through, parts.taken_by_through, RayKind::Refraction,
-           met.surface.material->ior == 1 ? 0 : 1, [&] { return *refracted; });
+           met.surface.material->ior == met.surface.ior_around ? 0 : 1, [&] { return *refracted; });
     return met;
 }
 

@@ -244,6 +244,37 @@ TEST(Whitted, GlassCountsReflectionsAndRefractions) {
     EXPECT_EQ(report.rays.refraction, 2u);
 }
 
+TEST(Whitted, GlassInGlassBendsByBothIndices) {
+    const auto picture = [](std::optional<double> ior_of_core) {
+        Scene scene = room_with_box({"glass", vec3(0), 0, 1, vec3(1), 1.5});
+        if (ior_of_core)
+            add_box(scene, {"core", vec3(0), 0, 1, vec3(1), *ior_of_core}, {-0.3, 1.1, 3.8},
+                    {0.4, 1.9, 4.5});
+        Camera camera = at_the_box(20);
+        camera.eye = {1, 2.5, 9};
+        RenderOptions options;
+        options.shadows = false;
+        return render(scene, camera, options, 8, 8);
+    };
+    const Image alone = picture({});
+    EXPECT_LT(difference(picture(1.5), alone).max, 1e-3) << "the same glass is not seen";
+    EXPECT_GT(difference(picture(1), alone).max, 0.01) << "a bubble is";
+}
+
+TEST(Whitted, SolidsAreLeftInAnyOrder) {
+    Solids solids;
+    EXPECT_EQ(solids.innermost(), kNone);
+    for (const uint32_t material : {1u, 2u, 3u})
+        solids.enter(material);
+    solids.leave(2);
+    solids.leave(7);
+    EXPECT_EQ(solids.innermost(), 3u);
+    solids.leave(3);
+    EXPECT_EQ(solids.innermost(), 1u);
+    solids.leave(1);
+    EXPECT_EQ(solids.innermost(), kNone);
+}
+
 TEST(Whitted, TotalReflectionKeepsAllTheLight) {
     // A ray inside a glass box of a great index never leaves, until the box shows its own color.
     Scene scene = room_with_box({"glass", {0, 1, 0}, 0, 1, vec3(1), 1e3});

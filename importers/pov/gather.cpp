@@ -2,6 +2,7 @@
 // Goes down from objects to their parts, and hands on what parts inherit.
 #include "importers/pov/gather.h"
 
+#include "importers/pov/trace.h"
 #include "importers/pov/values/transform.h"
 
 #include <fmt/format.h>
@@ -55,6 +56,14 @@ std::vector<TextureStep> to_uv_of(const Object& object, const dmat4& placed) {
     return steps;
 }
 
+/// Returns the object's surface in the world.
+Region projector_of(const Object& object, const dmat4& placed) {
+    constexpr uint64_t kMaxTriangles = 1000000; // they are held in memory for each point of a light
+    Object there = object;
+    there.placed = placed * object.placed;
+    return TraceTarget(cut_object(there, kMaxTriangles)).region();
+}
+
 void add_light(const LightSource& source, const dmat4& placed, uint32_t group, Scene& scene) {
     Light light = source.light;
     light.group = group;
@@ -68,6 +77,8 @@ void add_light(const LightSource& source, const dmat4& placed, uint32_t group, S
     if (glm::length(way) > 0)
         light.direction = glm::normalize(way);
     aim_from(light.position);
+    if (source.projector)
+        light.projector = projector_of(*source.projector, placed);
     const auto [columns, rows] = source.counts;
     light.color /= float(columns * rows);
     const auto share = [](int i, int count) { return count > 1 ? i / (count - 1.0) - 0.5 : 0; };

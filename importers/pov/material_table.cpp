@@ -102,9 +102,12 @@ void MaterialTable::mix(const Texture& texture, const dmat4& placed, const Place
 Bump MaterialTable::bump(const Normal& normal, const dmat4& placed) {
     const dmat4 within = placed * normal.pattern.placed;
     const PatternMap& map = *normal.pattern.pattern;
-    Bump made{normal.kind,     normal.amount,
-              normal.accuracy, textures_.of_pigments(map, within),
-              normal.profile,  {}};
+    Bump made{.kind = normal.kind,
+              .amount = normal.amount,
+              .accuracy = normal.accuracy,
+              .keeps_depth = normal.keeps_depth,
+              .pattern = textures_.of_pigments(map, within),
+              .profile = normal.profile};
     if (map.stops.empty() || !map.stops.front().normal)
         return made;
     made.kind = Bump::Kind::Mix;

@@ -55,6 +55,7 @@ struct LightSource {
     std::array<int, 2> counts{1, 1};
     dvec3 point_at{0, 0, 1};  // where each spotlight of the grid aims
     bool circular = false;    // the grid is pressed into a circle
+    ObjectPtr projector;      // of projected_through; null: none
     bool illuminates = false; // light comes from all points of the grid, not only shadows
 };
 

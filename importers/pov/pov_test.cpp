@@ -446,13 +446,13 @@ TEST(PovErrors, WhatIsDeclaredAndNotSeenMayBeUnsupported) {
 TEST(PovWarnings, ComeOncePerKind) {
     std::vector<std::string> messages;
     const auto scene =
-        parse_pov("sphere { 0, 1 pigment { tiling 9 } }\nsphere { 0, 1 pigment { tiling 8 } }\n"
+        parse_pov("sphere { 0, 1 pigment { tiling 26 } }\nsphere { 0, 1 pigment { tiling 25 } }\n"
                   "sphere { 0, 1 normal { pavement } }",
                   "x.pov", gather(messages));
     EXPECT_TRUE(scene);
     ASSERT_EQ(messages.size(), 2u);
     EXPECT_EQ(messages[0], "x.pov:1:25: the pattern 'tiling' is drawn by its average color\n"
-                           "    sphere { 0, 1 pigment { tiling 9 } }\n"
+                           "    sphere { 0, 1 pigment { tiling 26 } }\n"
                            "                            ^");
 }
 
@@ -543,6 +543,19 @@ TEST(PovScene, InteriorsHaveMedia) {
     EXPECT_TRUE(scene->omissions.empty());
 }
 
+TEST(PovScene, LightsAreProjectedThroughObjects) {
+    const Result<Scene> scene = parse("#declare S = sphere { y, 1 pigment { rgb 1 } } light_source "
+                                      "{ 5*y, 1 projected_through { S } translate x }");
+    ASSERT_TRUE(scene);
+    EXPECT_TRUE(scene->meshes.empty()) << "it is not seen";
+    const std::optional<Region>& projector = scene->lights.at(0).projector;
+    ASSERT_TRUE(projector);
+    EXPECT_NEAR(projector->first_crossing({1, -3, 0}, {0, 1, 0}, 0), 3, 1e-9);
+    EXPECT_TRUE(std::isinf(projector->first_crossing({-0.5, -3, 0}, {0, 1, 0}, 0)));
+    EXPECT_TRUE(scene->omissions.empty());
+    EXPECT_FALSE(parse("light_source { y, 1 projected_through { 3 } }"));
+}
+
 TEST(PovScene, AreaLightsAreGrids) {
     const Result<Scene> scene =
         parse("sphere { 0, 1 } light_source { y, rgb 6 area_light 4*x, 2*z, "
@@ -569,8 +582,8 @@ TEST(PovScene, AreaLightsAreGrids) {
 }
 
 TEST(PovWarnings, AreCountedOrErrors) {
-    const std::string text = "sphere { 0, 1 pigment { tiling 9 } }\n"
-                             "sphere { 0, 1 pigment { tiling 8 } }\nphotons { }";
+    const std::string text = "sphere { 0, 1 pigment { tiling 26 } }\n"
+                             "sphere { 0, 1 pigment { tiling 25 } }\nphotons { }";
     const Result<Scene> scene = parse(text);
     ASSERT_TRUE(scene);
     EXPECT_EQ(scene->omissions, (std::vector<Omission>{

@@ -77,24 +77,29 @@ void parse_area(Reader& reader, const Token& word, LightSource& source) {
             fmt::format("an area light has at most {} x {} lights", kMaxAlongSide, kMaxAlongSide));
 }
 
+/// Reads `{ OBJECT }` behind a word of a light.
+ObjectPtr parse_light_object(Reader& reader, std::string_view word) {
+    reader.expect('{', word);
+    ObjectPtr object;
+    if (starts_object(reader.peek()))
+        object = parse_object(reader);
+    else if (const auto named = take_named_if<ObjectPtr>(reader))
+        object = *named;
+    else
+        reader.fail_here("an object");
+    auto changed = std::make_shared<Object>(*object);
+    parse_modifiers(reader, *changed);
+    return changed;
+}
+
 bool parse_other_part(Reader& reader, Words& words, LightSource& source) {
     const Token token = reader.peek();
     if (reader.take("area_light")) {
         parse_area(reader, token, source);
     } else if (reader.take("looks_like")) {
-        reader.expect('{', "looks_like");
-        if (starts_object(reader.peek()))
-            words.looks_like = parse_object(reader);
-        else if (const auto object = take_named_if<ObjectPtr>(reader))
-            words.looks_like = *object;
-        else
-            reader.fail_here("an object");
-        auto changed = std::make_shared<Object>(*words.looks_like);
-        parse_modifiers(reader, *changed);
-        words.looks_like = changed;
+        words.looks_like = parse_light_object(reader, "looks_like");
     } else if (reader.take("projected_through")) {
-        reader.omit("projected_through", token.place, "projected_through of a light is left out");
-        skip_braces(reader, "projected_through");
+        source.projector = parse_light_object(reader, "projected_through");
     } else if (reader.take("photons"))
         skip_braces(reader, "photons");
     else if (reader.take("circular"))

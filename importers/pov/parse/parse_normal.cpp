@@ -98,6 +98,8 @@ Normal parse_normal_parts(Reader& reader, const Normal& base, char end) {
             normal.amount = parse_float(reader);
         else if (reader.take("accuracy"))
             normal.accuracy = std::max(1e-6, parse_float(reader));
+        else if (reader.take("no_bump_scale"))
+            normal.keeps_depth = parse_flag(reader);
         else if (reader.take("slope_map"))
             normal.profile = parse_slope_map(reader);
         else if (reader.take("bump_map")) {

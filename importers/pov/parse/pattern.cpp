@@ -3,6 +3,7 @@
 
 #include "core/texture/fractal.h"
 #include "core/texture/pattern.h"
+#include "core/texture/tiles/tiling.h"
 #include "importers/file/text.h"
 #include "importers/pov/parse/parse_object.h"
 #include "importers/pov/parse/texture.h"
@@ -65,6 +66,7 @@ const std::unordered_map<std::string_view, KindAndWave> kPatterns = {
     {"spiral1", {Kind::Spiral1, Wave::Triangular}},
     {"spiral2", {Kind::Spiral2, Wave::Triangular}},
     {"spotted", {Kind::Bozo}},
+    {"tiling", {Kind::Tiling}},
     {"waves", {Kind::Waves}},
     {"wood", {Kind::Wood, Wave::Triangular}},
     {"wrinkles", {Kind::Wrinkles}}};
@@ -87,7 +89,7 @@ bool is_one_of(const Token& token, const std::string_view (&words)[N]) {
 
 /// Returns whether the word is a pattern that Overcast draws by its average color.
 bool is_other_pattern(const Token& token) {
-    static constexpr std::string_view kWords[] = {"pavement", "potential", "tiling"};
+    static constexpr std::string_view kWords[] = {"pavement", "potential"};
     return is_one_of(token, kWords);
 }
 
@@ -228,8 +230,18 @@ void PatternParts::parse_arguments(const Token& token) {
         parse_slope();
     else if (token.is("density_file"))
         take_density_file(token);
+    else if (token.is("tiling"))
+        parse_tiling(token);
     else if (pattern_.kind == Kind::Fractal)
         parse_fractal(token);
+}
+
+/// Reads the number. Those of tilings without a period are read, too.
+void PatternParts::parse_tiling(const Token& token) {
+    const int number = parse_int(reader_, 1, 27, "the number of a tiling");
+    pattern_.parameters[0] = number;
+    if (number > int(kTilings))
+        refuse(token);
 }
 
 /// Reads `coords X`, `size X` and `metric X`.

@@ -39,6 +39,7 @@ private:
     void take_pigment_pattern();
     void take_image_pattern(const Token& token);
     void take_wrap(const Token& word);
+    void parse_tiling(const Token& token);
     void parse_facets();
     void parse_slope();
     void add_altitude(const dvec3& altitude, double low, double high);

@@ -65,7 +65,8 @@ bool starts_entry(const Reader& reader, const Token& token) {
 void parse_stop(Reader& reader, MapOf of, std::vector<MapStop>& stops) {
     // Entries of `average` may come without a number.
     const bool has_number = starts_number(reader, reader.peek()) && !starts_color(reader.peek());
-    const double at = has_number ? parse_float(reader) : 1;
+    // POV-Ray keeps places in a map as floats, which decides where a value meets one.
+    const double at = has_number ? double(float(parse_float(reader))) : 1;
     reader.take_comma();
     const Token token = reader.peek();
     const auto add_color = [&](double where, const Color& color) {
@@ -81,7 +82,7 @@ void parse_stop(Reader& reader, MapOf of, std::vector<MapStop>& stops) {
         } else {
             add_color(at, parse_color(reader));
             reader.take_comma();
-            add_color(n.v[0], parse_color(reader));
+            add_color(double(float(n.v[0])), parse_color(reader));
         }
         return;
     }

@@ -243,13 +243,15 @@ TEST(PovTexture, MayLetMoreLightThroughThanThereIs) {
 }
 
 TEST(PovNormal, TiltsNormals) {
-    const Scene scene = textured_box("pigment { rgb 1 } normal { granite 0.3 accuracy 0.1 scale 2 "
-                                     "turbulence 0.2 } scale 3");
+    const Scene scene =
+        textured_box("pigment { rgb 1 } normal { granite 0.3 accuracy 0.1 scale 2 no_bump_scale "
+                     "turbulence 0.2 } scale 3");
     const Material& material = box_material(scene);
     ASSERT_TRUE(material.bump);
     EXPECT_EQ(material.bump->kind, Bump::Kind::Height);
     EXPECT_EQ(material.bump->amount, 0.3);
     EXPECT_EQ(material.bump->accuracy, 0.1);
+    EXPECT_TRUE(material.bump->keeps_depth);
     EXPECT_EQ(material.bump->pattern.at({6, 12, -6}), dvec3(1, 2, -1)) << "both scales";
     const Pattern& pattern = scene.textures.at(material.bump->pattern.texture).pattern;
     EXPECT_EQ(pattern.kind, Pattern::Kind::Granite);
@@ -373,7 +375,7 @@ TEST(PovSky, HasRainbows) {
     const Rainbow& bow = scene.background.rainbows[0];
     EXPECT_EQ(bow.direction, dvec3(0, 0, 1));
     ASSERT_EQ(bow.colors.size(), 2u);
-    EXPECT_EQ(bow.colors[0].at, 0.2);
+    EXPECT_EQ(bow.colors[0].at, double(0.2f));
     EXPECT_EQ(bow.colors[1].color.transmit, 0.5f);
     EXPECT_EQ(bow.arc, 120);
     EXPECT_EQ(bow.full_arc, 30);
@@ -394,6 +396,17 @@ TEST(PovPattern, MixesTexturesOnly) {
         "box { 0, 1 texture { gradient x color_map { [0 rgb 0] [1 rgb 1] } } }", "x.pov", {});
     ASSERT_FALSE(scene);
     EXPECT_NE(scene.error().message.find("expected textures"), std::string::npos);
+}
+
+TEST(PovPattern, HasTilings) {
+    const Scene scene = textured_scene("plane { y, 0 pigment { tiling 7 scale 2 } }");
+    ASSERT_EQ(scene.textures.size(), 1u);
+    EXPECT_EQ(scene.textures[0].pattern.kind, Pattern::Kind::Tiling);
+    EXPECT_EQ(scene.textures[0].pattern.parameters[0], 7);
+    const Result<Scene> other = parse_pov("plane { y, 0 pigment { tiling 28 } }", "x.pov", {});
+    ASSERT_FALSE(other);
+    EXPECT_NE(other.error().message.find("the number of a tiling"), std::string::npos)
+        << other.error().message;
 }
 
 } // namespace ovc

@@ -48,6 +48,10 @@ void PatternParts::take_warp() {
         add_step(step);
     } else if (reader_.take("black_hole")) {
         take_black_hole(token);
+    } else if (reader_.take("cubic")) {
+        reader_.expect('}', "the warp cubic");
+        step.kind = TextureStep::Kind::Cubic;
+        add_step(step);
     } else if (token.is("cylindrical") || token.is("spherical") || token.is("toroidal") ||
                token.is("planar")) {
         reader_.next();

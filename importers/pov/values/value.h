@@ -98,6 +98,7 @@ struct Normal {
     Bump::Kind kind = Bump::Kind::Height;
     double amount = 0.5;
     double accuracy = 0.02;
+    bool keeps_depth = false;       // no_bump_scale
     std::vector<SlopeStop> profile; // of a slope_map
 };
 using NormalPtr = std::shared_ptr<const Normal>;
