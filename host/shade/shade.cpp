@@ -189,8 +189,7 @@ vec3 ambient_light(const Background& background, const vec3& up, const SurfacePo
            (optics ? surface.maps.emission * optics->emission : vec3(0));
 }
 
-/// Returns the vector from the position to the light, at its full length.
-static dvec3 towards_light(const Light& light, const dvec3& position) {
+dvec3 towards_light(const Light& light, const dvec3& position) {
     const dvec3 there = light.position - position;
     return light.parallel ? std::abs(glm::dot(there, light.direction)) * -light.direction : there;
 }
@@ -262,8 +261,19 @@ vec3 direct_light(const Light& light, const SurfacePoint& surface) {
     return finish_light(surface, towards, arriving, /* highlights= */ !light.shadowless);
 }
 
+/// Returns the vector from the light to its point that shadow rays go to, on their way `there`.
+static dvec3 shadow_offset_of(const Light& light, const dvec3& there) {
+    if (!light.faces_places)
+        return light.shadow_offset;
+    const dvec3 towards = glm::normalize(there);
+    const dvec3 z(0, 0, 1), x(1, 0, 0);
+    const dvec3 one = glm::normalize(glm::cross(towards, std::abs(towards.z) < 0.9999 ? z : x));
+    return light.shadow_offset.x * one + light.shadow_offset.y * glm::cross(one, towards);
+}
+
 Ray shadow_ray(const Light& light, const dvec3& position) {
-    const dvec3 there = towards_light(light, position) + light.shadow_offset;
+    const dvec3 middle = towards_light(light, position);
+    const dvec3 there = middle + shadow_offset_of(light, middle);
     const double length = glm::length(there);
     return {position, 0, there, length > light.clearance ? 1 - light.clearance / length : 0};
 }
