@@ -249,6 +249,11 @@ struct Light {
     /// Shadow rays go to position + shadow_offset, a point of an area light whose light has its
     /// direction and strength from its middle, as POV-Ray's has without area_illumination.
     dvec3 shadow_offset{0};
+    /// The area light faces the place that it lights, as POV-Ray's with `orient`: x of the offset
+    /// is along towards x the z axis, y across that and the way to the light, and z is 0.
+    bool faces_places = false;
+    /// The lights that are points of one area light, and stand side by side; 1: it is a point.
+    uint32_t area_points = 1;
     /// What is nearer to the light than this throws no shadow, such as what it lies on.
     double clearance = 0;
     uint32_t group = kNone; // of lights and meshes; kNone: shines on all that LitBy lets it

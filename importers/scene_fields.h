@@ -111,7 +111,7 @@ void each_field(auto& io, Some<Absorption> auto& a) {
 
 void each_field(auto& io, Some<Medium> auto& m) {
     io(m.absorption, m.emission, m.scattering, m.extinction, m.phase, m.eccentricity, m.densities,
-       m.samples);
+       m.intervals, m.samples, m.levels, m.threshold);
 }
 
 void each_field(auto& io, Some<Material> auto& m) {
@@ -134,9 +134,9 @@ void each_field(auto& io, Some<LightBeam> auto& b) {
 }
 
 void each_field(auto& io, Some<Light> auto& l) {
-    io(l.position, l.color, l.shadow_offset, l.clearance, l.group, l.on_camera, l.direction, l.cone,
-       l.beam, l.parallel, l.shadowless, l.lights_media, l.fades_in_air, l.fade_distance,
-       l.fade_power, l.stand_in, l.projector);
+    io(l.position, l.color, l.shadow_offset, l.faces_places, l.area_points, l.clearance, l.group,
+       l.on_camera, l.direction, l.cone, l.beam, l.parallel, l.shadowless, l.lights_media,
+       l.fades_in_air, l.fade_distance, l.fade_power, l.stand_in, l.projector);
 }
 
 void each_field(auto& io, Some<ImageWindow> auto& w) {

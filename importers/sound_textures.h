@@ -137,7 +137,8 @@ inline bool has_sound_bumps(const Scene& scene) {
 template <class IsColor>
 bool has_sound_densities(const std::vector<Medium>& media, const IsColor& is_color) {
     return std::all_of(media.begin(), media.end(), [&](const Medium& medium) {
-        return medium.samples >= 1 && medium.phase <= Medium::Phase::HenyeyGreenstein &&
+        return medium.samples >= 1 && medium.intervals >= 1 && medium.levels <= kMaxMediumLevels &&
+               medium.phase <= Medium::Phase::HenyeyGreenstein &&
                std::abs(medium.eccentricity) < 1 &&
                std::all_of(medium.densities.begin(), medium.densities.end(),
                            [&](const PlacedTexture& density) { return is_color(density.texture); });

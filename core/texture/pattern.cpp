@@ -162,15 +162,14 @@ TransparentColor color_of_image(const Texture& texture, TexturePoint point) {
     return color_at(*texture.image, point.at, point.sides);
 }
 
-/// Moves the point to where the texture is evaluated.
+} // namespace
+
 TexturePoint moved_to_uv(const TexturePoint& point) {
     TexturePoint there = point;
     there.at = dvec3(point.uv, 0);
     there.sides = {dvec3(point.uv_sides[0], 0), dvec3(point.uv_sides[1], 0)};
     return there;
 }
-
-} // namespace
 
 TransparentColor color_at(std::span<const Texture> textures, uint32_t number,
                           const TexturePoint& point) {

@@ -19,6 +19,9 @@ struct PatternPlace {
 PatternPlace evaluate(std::span<const Texture> textures, const Pattern& pattern,
                       const TexturePoint& point);
 
+/// Returns the point at which a texture on texture coordinates is evaluated.
+TexturePoint moved_to_uv(const TexturePoint& point);
+
 /// The two halves of evaluate(): where the pattern's steps and its turbulence lead, and the value
 /// there. moved() returns a point that is not finite, or very far away, where the value is 0.
 dvec3 moved(const Pattern& pattern, dvec3 at);

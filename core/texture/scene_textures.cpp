@@ -35,6 +35,8 @@ std::vector<bool> materials_on_uv(const Scene& scene) {
                     (material.bump && on_uv[material.bump->pattern.texture]) ||
                     (material.under != kNone && wanted[material.under]);
         if (material.mix)
+            wanted[m] = wanted[m] || on_uv[material.mix->texture];
+        if (material.mix)
             for (const TextureStop& stop : scene.textures[material.mix->texture].stops)
                 wanted[m] = wanted[m] || wanted[stop.texture];
     }

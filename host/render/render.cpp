@@ -82,7 +82,8 @@ static std::unique_ptr<Integrator> make_integrator(const Scene& scene, const Cam
                                                               .shadows = options.shadows,
                                                               .seed = seed,
                                                               .clamp = options.clamp});
-    return std::make_unique<Whitted>(scene, up, options.max_depth, options.shadows, bounced);
+    return std::make_unique<Whitted>(scene, up, options.max_depth, options.shadows, bounced,
+                                     /* light_stride= */ 1, /* media= */ true, camera.eye);
 }
 
 namespace {

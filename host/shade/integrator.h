@@ -42,6 +42,23 @@ private:
     std::array<uint32_t, 4> materials_{kNone, kNone, kNone, kNone}; // the last entered comes first
 };
 
+/// The numbers of the media's containers that a ray is in; 0: none. One may come more than once.
+/// Where they lie deeper in each other than this, the outer ones stay.
+struct Containers {
+    std::array<uint16_t, 4> numbers = {};
+
+    void replace(uint16_t from, uint16_t to) {
+        if (const auto found = std::find(numbers.begin(), numbers.end(), from);
+            found != numbers.end())
+            *found = to;
+    }
+    void enter(uint16_t number) { replace(0, number); }
+    void leave(uint16_t number) { replace(number, 0); }
+    bool includes(uint16_t number) const {
+        return std::find(numbers.begin(), numbers.end(), number) != numbers.end();
+    }
+};
+
 /// The purpose of a ray that looks for the nearest surface.
 struct Path {
     uint32_t pixel;
@@ -56,8 +73,7 @@ struct Path {
     float behind = 0; // path tracing: the distance from the ray's origin back to where the
                       // direction was chosen, through panes that do not bend it
     Cone cone = {};
-    /// The material in whose media the ray is, as far as the path has seen; kNone: in none.
-    uint32_t inside = kNone;
+    Containers inside = {}; // of media, as far as the path has seen
     Solids within = {};
 };
 

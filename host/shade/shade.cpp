@@ -189,8 +189,7 @@ vec3 ambient_light(const Background& background, const vec3& up, const SurfacePo
            (optics ? surface.maps.emission * optics->emission : vec3(0));
 }
 
-/// Returns the vector from the position to the light, at its full length.
-static dvec3 towards_light(const Light& light, const dvec3& position) {
+dvec3 towards_light(const Light& light, const dvec3& position) {
     const dvec3 there = light.position - position;
     return light.parallel ? std::abs(glm::dot(there, light.direction)) * -light.direction : there;
 }
@@ -202,6 +201,16 @@ static double share_of_beam(const LightBeam& beam, double off_axis) {
     const double edge =
         off_axis <= beam.radius ? 1 : smooth_step(beam.falloff, beam.radius, off_axis);
     return std::pow(1 - off_axis / beam.falloff, beam.tightness) * edge;
+}
+
+/// Returns the vector from the light to its point that shadow rays go to, on their way `there`.
+static dvec3 shadow_offset_of(const Light& light, const dvec3& there) {
+    if (!light.faces_places)
+        return light.shadow_offset;
+    const dvec3 towards = glm::normalize(there);
+    const dvec3 z(0, 0, 1), x(1, 0, 0);
+    const dvec3 one = glm::normalize(glm::cross(towards, std::abs(towards.z) < 0.9999 ? z : x));
+    return light.shadow_offset.x * one + light.shadow_offset.y * glm::cross(one, towards);
 }
 
 /// Returns the t at which a shadow ray ends: at its light, whose clearance is free of shadows, or
@@ -242,7 +251,8 @@ FromLight light_at(const Light& light, const dvec3& position) {
     const dvec3 there = towards_light(light, position);
     const double distance = glm::length(there);
     const dvec3 towards = distance > 0 ? there / distance : dvec3(0);
-    if (light.projector && end_of_shadow_ray(light, position, there + light.shadow_offset) == 0)
+    if (light.projector &&
+        end_of_shadow_ray(light, position, there + shadow_offset_of(light, there)) == 0)
         return {towards, vec3(0)};
     return {towards,
             light.color * float(attenuation(light, light.position - position, towards, distance))};
@@ -277,7 +287,8 @@ vec3 direct_light(const Light& light, const SurfacePoint& surface) {
 }
 
 Ray shadow_ray(const Light& light, const dvec3& position) {
-    const dvec3 there = towards_light(light, position) + light.shadow_offset;
+    const dvec3 middle = towards_light(light, position);
+    const dvec3 there = middle + shadow_offset_of(light, middle);
     return {position, 0, there, end_of_shadow_ray(light, position, there)};
 }
 

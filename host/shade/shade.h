@@ -69,6 +69,9 @@ vec3 background_color(const Scene& scene, const vec3& up, const dvec3& dir);
 /// ground, without shadows.
 vec3 ambient_light(const Background& background, const vec3& up, const SurfacePoint& surface);
 
+/// Returns the vector from the position to the light, at its full length.
+dvec3 towards_light(const Light& light, const dvec3& position);
+
 /// The light that a lamp brings to a place if nothing is in between.
 struct FromLight {
     dvec3 towards{0}; // the lamp, unit length; 0: it is at this very place

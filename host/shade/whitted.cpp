@@ -60,11 +60,19 @@ static bool is_hollow(const Scene& scene, const Hit& hit) {
     return scene.materials[scene.meshes[hit.id.mesh].material].hollow;
 }
 
+static std::vector<const Medium*> pointers_to(const std::vector<Medium>& media) {
+    std::vector<const Medium*> all;
+    for (const Medium& medium : media)
+        all.push_back(&medium);
+    return all;
+}
+
 /// Returns the share of a shadow ray's light that the media of a solid leave on its way out.
 static vec3 share_of_media(const Scene& scene, const Ray& ray, const Hit& hit) {
     if (!is_inside(scene, ray, hit))
         return vec3(1);
-    const std::vector<Medium>& media = scene.materials[scene.meshes[hit.id.mesh].material].media;
+    const std::vector<const Medium*> media =
+        pointers_to(scene.materials[scene.meshes[hit.id.mesh].material].media);
     return media.empty() ? vec3(1) : share_through_media(scene.textures, media, ray, hit.t);
 }
 
@@ -88,6 +96,24 @@ static bool lets_light_through(const Scene& scene) {
                        [](const Material& m) { return m.transmission > 0; });
 }
 
+/// Returns how often the mesh encloses the point: the times that a ray from it leaves the mesh,
+/// less those that it enters it.
+static int times_around(const Soup& soup, uint32_t mesh, const dvec3& point) {
+    const dvec3 way(0.5773, 0.5127, 0.6355); // along no axis, so that it meets no edges of boxes
+    int times = 0;
+    for (uint32_t prim = 0; prim < soup.chunks[mesh].size(); ++prim) {
+        const Triangle t = soup.triangle({mesh, prim});
+        const dvec3 a = t[0] - point, b = t[1] - point, c = t[2] - point;
+        const double u = glm::dot(way, glm::cross(b, c)), v = glm::dot(way, glm::cross(c, a)),
+                     w = glm::dot(way, glm::cross(a, b));
+        const bool leaves = u >= 0 && v >= 0 && w >= 0, enters = u <= 0 && v <= 0 && w <= 0;
+        const double volume = glm::dot(a, glm::cross(b, c)); // above 0: the point is on the inside
+        if (leaves != enters && (leaves ? volume > 0 : volume < 0))
+            times += leaves ? 1 : -1;
+    }
+    return times;
+}
+
 void tell_simplifications(const Scene& scene, std::span<const Light> lights,
                           std::string_view source, const LogSink& log) {
     // Of the stand-ins, only the sky's is parallel.
@@ -105,7 +131,8 @@ void tell_simplifications(const Scene& scene, std::span<const Light> lights,
 }
 
 Whitted::Whitted(const Scene& scene, const vec3& up, uint32_t max_depth, bool shadows,
-                 const BouncedLight* bounced, uint32_t light_stride, bool media)
+                 const BouncedLight* bounced, uint32_t light_stride, bool media,
+                 const std::optional<dvec3>& eye)
     : scene_(scene),
       up_(up),
       max_depth_(max_depth),
@@ -113,9 +140,27 @@ Whitted::Whitted(const Scene& scene, const vec3& up, uint32_t max_depth, bool sh
       bounced_(bounced),
       light_stride_(light_stride),
       light_may_pass_(lets_light_through(scene)),
-      has_media_(media && has_media(scene)) {
+      has_media_(media && has_media(scene)),
+      air_(pointers_to(scene.background.media)),
+      media_(1),
+      containers_(scene.materials.size()) {
     assert(max_depth <= UINT16_MAX); // Path::depth counts to it
     assert(light_stride >= 1);
+    for (size_t m = 0; has_media_ && m < scene.materials.size(); ++m)
+        if (!scene.materials[m].media.empty() && media_.size() <= UINT16_MAX) {
+            containers_[m] = uint16_t(media_.size());
+            media_.push_back(pointers_to(scene.materials[m].media));
+        }
+    if (!eye || media_.size() == 1 || scene.on_disk)
+        return;
+    std::vector<int> times(media_.size()); // that the eye is in each container
+    for (uint32_t mesh = 0; mesh < scene.meshes.size(); ++mesh)
+        if (const uint32_t material = scene.meshes[mesh].material;
+            material < containers_.size() && containers_[material] != 0)
+            times[containers_[material]] += times_around(scene.soup, mesh, *eye);
+    for (size_t number = 1; number < times.size(); ++number)
+        for (; times[number] > 0; --times[number])
+            around_eye_.enter(uint16_t(number));
 }
 
 void Whitted::shade(std::span<const Ray> rays, std::span<const Path> paths,
@@ -124,6 +169,8 @@ void Whitted::shade(std::span<const Ray> rays, std::span<const Path> paths,
     all.reserve(rays.size());
     for (size_t i = 0; i < rays.size(); ++i) {
         Path path = paths[i];
+        if (path.kind == RayKind::Camera)
+            path.inside = around_eye_;
         dim_by_fog(rays[i], hits[i], path, film);
         if (has_media_)
             dim_by_media(rays[i], hits[i], path, film, spawned);
@@ -162,41 +209,81 @@ void Whitted::dim_by_fog(const Ray& ray, const Hit& hit, Path& path, Film& film)
 /// The way of a ray that hits nothing through media, as povray has it.
 static constexpr double kEndlessMedia = 1e7;
 
-std::span<const Medium> Whitted::media_before(const Ray& ray, const Path& path,
-                                              const Hit& hit) const {
-    const uint32_t material = hit.is_hit() ? scene_.meshes[hit.id.mesh].material : kNone;
+uint16_t Whitted::container_of(const Hit& hit) const {
+    const uint32_t material = scene_.meshes[hit.id.mesh].material;
+    return material < containers_.size() ? containers_[material] : uint16_t(0);
+}
+
+/// Returns the media on a ray's way to its hit: those of all containers that it is in, and those of
+/// the air, but for solids that are not hollow.
+std::vector<const Medium*> Whitted::media_before(const Ray& ray, const Path& path,
+                                                 const Hit& hit) const {
     const bool leaves = hit.is_hit() && is_inside(scene_, ray, hit);
-    if (leaves && !scene_.materials[material].media.empty())
-        return scene_.materials[material].media;
-    if (leaves && !scene_.materials[material].hollow)
+    Containers inside = path.inside;
+    if (leaves && container_of(hit) == 0 && !is_hollow(scene_, hit))
         return {};
-    if (path.inside != kNone && hit.is_hit())
-        return scene_.materials[path.inside].media;
-    return scene_.background.media;
+    if (leaves && !inside.includes(container_of(hit)))
+        inside.enter(container_of(hit));
+    std::vector<const Medium*> media = air_;
+    if (leaves && !is_hollow(scene_, hit))
+        media.clear();
+    for (const uint16_t number : inside.numbers)
+        media.insert(media.end(), media_[number].begin(), media_[number].end());
+    return media;
+}
+
+/// Returns the values of t up to `end` at which the ray crosses the surface of a spotlight's cone.
+static void add_cone_crossings(const Light& light, const Ray& ray, double end,
+                               std::vector<double>& ends) {
+    const double c2 = light.cone->falloff_cosine * light.cone->falloff_cosine;
+    const dvec3 from = ray.org - light.position;
+    const double a0 = glm::dot(from, light.direction), a1 = glm::dot(ray.dir, light.direction);
+    const double a = a1 * a1 - c2 * glm::dot(ray.dir, ray.dir);
+    const double b = a0 * a1 - c2 * glm::dot(from, ray.dir);
+    const double c = a0 * a0 - c2 * glm::dot(from, from);
+    const double root = b * b - a * c;
+    if (a == 0 || !(root > 0))
+        return;
+    for (const double t : {(-b - std::sqrt(root)) / a, (-b + std::sqrt(root)) / a})
+        if (t > 0 && t < end && a0 + t * a1 > 0)
+            ends.push_back(t);
 }
 
 /// Takes the light that media keep from the path, and adds theirs and that of lamps which they
 /// scatter.
 void Whitted::dim_by_media(const Ray& ray, const Hit& hit, Path& path, Film& film,
                            Spawned& spawned) const {
-    const std::span<const Medium> media = media_before(ray, path, hit);
+    const std::vector<const Medium*> media = media_before(ray, path, hit);
     if (media.empty())
         return;
     const double end = hit.is_hit() ? hit.t : kEndlessMedia / glm::length(ray.dir);
-    const ThroughMedia through = through_media(scene_.textures, media, ray, end);
+    std::vector<double> ends = {0, end};
+    const bool scatters = std::any_of(media.begin(), media.end(), [](const Medium* medium) {
+        return medium->scattering != vec3(0);
+    });
+    for (const Light& light : scene_.lights)
+        if (scatters && light.cone && light.lights_media)
+            add_cone_crossings(light, ray, end, ends);
+    std::sort(ends.begin(), ends.end());
+    const ThroughMedia through = through_media(scene_.textures, media, ray, ends);
     const dvec3 way = glm::normalize(ray.dir);
-    for (const ScatteringPlace& from : through.scattering)
-        scatter(from, way, path, film, spawned);
+    for (size_t i = 0; i < through.scattering.size(); ++i)
+        scatter(through.scattering[i], way, path, path.pixel + uint32_t(i), film, spawned);
     film.add(path.pixel, path.weight * through.added);
     path.weight *= through.share;
 }
 
-void Whitted::scatter(const ScatteringPlace& from, const dvec3& way, const Path& path, Film& film,
-                      Spawned& spawned) const {
+/// Sends light of all lamps that arrives at the place along the path. turn: the point of an area
+/// light that is asked for all of it.
+void Whitted::scatter(const ScatteringPlace& from, const dvec3& way, const Path& path,
+                      uint32_t turn, Film& film, Spawned& spawned) const {
     for (uint32_t number = 0; number < scene_.lights.size(); ++number) {
         const Light& light = scene_.lights[number];
-        const FromLight arriving = light.lights_media ? light_at(light, from.at) : FromLight{};
-        const double phase = phase_of(*from.medium, glm::dot(way, arriving.towards));
+        if (!light.lights_media || (number + turn) % light.area_points != 0)
+            continue;
+        const FromLight arriving = light_at(light, from.at);
+        const double phase =
+            light.area_points * phase_of(*from.medium, glm::dot(way, arriving.towards));
         const Ray ray = shadow_ray(light, from.at);
         const vec3 seen = path.weight * from.share * float(phase) * arriving.color *
                           share_of_air(light, ray) * std::numbers::inv_pi_v<float>;
@@ -214,16 +301,24 @@ vec3 Whitted::share_of_air(const Light& light, const Ray& ray) const {
     if (!light.fades_in_air)
         return vec3(1);
     return through_fog(scene_.background.fogs, ray, 1).share *
-           share_through_media(scene_.textures, scene_.background.media, ray, 1);
+           share_through_media(scene_.textures, air_, ray, 1);
 }
 
 /// Returns in whose media a ray is that leaves the surface.
-uint32_t Whitted::inside_behind(const Path& path, const Met& met, bool goes_through) const {
+Containers Whitted::inside_behind(const Path& path, const Met& met, bool goes_through) const {
+    Containers inside = path.inside;
     const uint32_t material = scene_.meshes[met.id.mesh].material;
-    if (!has_media_ || material >= scene_.materials.size() ||
-        scene_.materials[material].media.empty())
-        return path.inside;
-    return goes_through == met.surface.entering ? material : kNone;
+    const uint16_t number = material < containers_.size() ? containers_[material] : uint16_t(0);
+    if (number == 0)
+        return inside;
+    if (!met.surface.entering) {
+        if (goes_through)
+            inside.leave(number);
+        else if (!inside.includes(number))
+            inside.enter(number);
+    } else if (goes_through)
+        inside.enter(number);
+    return inside;
 }
 
 /// Divides the path's weight among the surface's own color and the two rays that may leave it. The
@@ -280,7 +375,7 @@ void Whitted::light_up(const Light& light, uint32_t number, const Met& met, Film
         return;
     Ray ray = shadow_ray(light, met.surface.position);
     const bool from_behind =
-        glm::dot(ray.dir - light.shadow_offset, met.surface.geometric_normal) < 0;
+        glm::dot(towards_light(light, met.surface.position), met.surface.geometric_normal) < 0;
     if (from_behind)
         ray = shadow_ray(light, met.surface.beyond);
     arriving *= share_of_air(light, ray);

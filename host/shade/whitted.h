@@ -10,8 +10,10 @@
 #include "host/shade/surface/media.h"
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string_view>
+#include <vector>
 
 namespace ovc {
 
@@ -34,9 +36,10 @@ public:
     /// must be placed. bounced: the scene's diffuse light, which must outlive it; null: none.
     /// light_stride: a path asks every so many-th light, which counts for as many; its sample says
     /// which ones, so that so many samples in a row have asked all. media: whether the scene's are
-    /// seen.
+    /// seen. eye: of the camera, which may lie in media.
     Whitted(const Scene& scene, const vec3& up, uint32_t max_depth, bool shadows,
-            const BouncedLight* bounced = nullptr, uint32_t light_stride = 1, bool media = true);
+            const BouncedLight* bounced = nullptr, uint32_t light_stride = 1, bool media = true,
+            const std::optional<dvec3>& eye = {});
 
     void shade(std::span<const Ray> rays, std::span<const Path> paths, std::span<const Hit> hits,
                Film& film, Spawned& spawned) const override;
@@ -48,11 +51,12 @@ private:
     void dim_by_fog(const Ray& ray, const Hit& hit, Path& path, Film& film) const;
     void dim_by_media(const Ray& ray, const Hit& hit, Path& path, Film& film,
                       Spawned& spawned) const;
-    std::span<const Medium> media_before(const Ray& ray, const Path& path, const Hit& hit) const;
-    void scatter(const ScatteringPlace& from, const dvec3& way, const Path& path, Film& film,
-                 Spawned& spawned) const;
+    uint16_t container_of(const Hit& hit) const;
+    std::vector<const Medium*> media_before(const Ray& ray, const Path& path, const Hit& hit) const;
+    void scatter(const ScatteringPlace& from, const dvec3& way, const Path& path, uint32_t turn,
+                 Film& film, Spawned& spawned) const;
     vec3 share_of_air(const Light& light, const Ray& ray) const;
-    uint32_t inside_behind(const Path& path, const Met& met, bool goes_through) const;
+    Containers inside_behind(const Path& path, const Met& met, bool goes_through) const;
     Met meet(const Ray& ray, const Path& path, const Hit& hit, Spawned& spawned) const;
     void light_up(const Light& light, uint32_t number, const Met& met, Film& film,
                   Spawned& spawned) const;
@@ -65,6 +69,10 @@ private:
     const uint32_t light_stride_;
     const bool light_may_pass_;
     const bool has_media_;
+    const std::vector<const Medium*> air_;          // the media outside of containers
+    std::vector<std::vector<const Medium*>> media_; // by a container's number; none has 0
+    std::vector<uint16_t> containers_;              // their numbers, by material
+    Containers around_eye_;
 };
 
 } // namespace ovc

@@ -317,11 +317,41 @@ TEST(Whitted, MediaFillWhatTheirSurfaceEncloses) {
     bright.emission = vec3(0.1f);
     misty.scattering = vec3(0.1f);
     misty.extinction = 0;
+    misty.samples = 64;
+    misty.levels = 0;
     EXPECT_NEAR(seen_through({dark}, false), empty * std::exp(-0.6f), 1e-4);
     EXPECT_NEAR(seen_through({bright}, false), empty + 0.2f, 1e-4);
     EXPECT_NEAR(seen_through({misty}, true) - seen_through({}, true), 0.1f, 0.002)
         << "half of the way is in shadow";
     EXPECT_NEAR(seen_through({misty}, false), empty, 1e-6);
+}
+
+/// Three boxes in each other, each of its own medium, with a wall in the innermost one.
+TEST(Whitted, MediaOfContainersAddUpAlsoAroundTheCamera) {
+    const auto seen_from = [](double z) {
+        Scene scene;
+        for (uint32_t box = 0; box < 3; ++box) {
+            Material clear;
+            clear.transmission = 1;
+            clear.media.resize(1);
+            clear.media[0].absorption = vec3(box == 0 ? 0.1f : box == 1 ? 0.2f : 0.4f);
+            const dvec3 half(1, 1, 3 - int(box));
+            add_box(scene, clear, -half, half);
+        }
+        scene.materials.push_back({"wall", vec3(1)});
+        scene.materials[3].finish = Finish{.ambient = vec3(1), .diffuse = 0};
+        scene.add_mesh("wall", 3, quad({-9, -9, 0}, {9, -9, 0}, {9, 9, 0}, {-9, 9, 0}));
+        scene.may_add_light = false;
+        Camera camera;
+        camera.eye = {0.01, 0.02, z};
+        camera.target = {0.01, 0.02, 0};
+        camera.fov_degrees = 0.01;
+        return double(render(scene, camera).pixels[0].r);
+    };
+    for (const double z : {9.0, 3.0 - 1e-6})
+        EXPECT_NEAR(seen_from(z), std::exp(-(0.1 + 0.3 + 0.7)), 1e-4) << z;
+    EXPECT_NEAR(seen_from(1.5), std::exp(-(0.15 + 0.7)), 1e-4);
+    EXPECT_NEAR(seen_from(0.5), std::exp(-0.35), 1e-4);
 }
 
 /// Returns the red of a white floor below a clear box, 2 high, under a lamp high above.

@@ -2,6 +2,7 @@
 // Goes down from objects to their parts, and hands on what parts inherit.
 #include "importers/pov/gather.h"
 
+#include "importers/pov/parse/texture.h"
 #include "importers/pov/trace.h"
 #include "importers/pov/values/transform.h"
 
@@ -26,14 +27,6 @@ bool is_curved(const Object& object) {
     return std::find(std::begin(kMeshes), std::end(kMeshes), object.kind) == std::end(kMeshes);
 }
 
-/// Returns the texture with its pigments, of all layers, on texture coordinates.
-Texture on_texture_coordinates(Texture texture) {
-    texture.pigment.uv_mapping = true;
-    if (texture.under)
-        texture.under = std::make_shared<const Texture>(on_texture_coordinates(*texture.under));
-    return texture;
-}
-
 /// Returns the square from -0.5 to 0.5 pressed into the circle that touches its sides.
 dvec2 into_circle(const dvec2& at) {
     const double length = glm::length(at);
@@ -44,7 +37,7 @@ dvec2 into_circle(const dvec2& at) {
 /// known.
 std::vector<TextureStep> to_uv_of(const Object& object, const dmat4& placed) {
     const Shape* const shape = std::get_if<Shape>(&object.shape);
-    if (shape && !shape->knows_uv)
+    if (shape && shape->corners_have_uv)
         return {};
     TextureStep flat; // a pattern is evaluated at (u, v, 0)
     flat.rows[2] = dvec4(0);
@@ -64,6 +57,34 @@ Region projector_of(const Object& object, const dmat4& placed) {
     return TraceTarget(cut_object(there, kMaxTriangles)).region();
 }
 
+/// The max lights of an area light. Each takes a shadow ray at every hit.
+constexpr int kMaxAlongSide = 12;
+constexpr int kMaxAreaPoints = kMaxAlongSide * kMaxAlongSide;
+
+/// Returns how many lights a grid is drawn by. Few stand for many.
+std::array<int, 2> counts_drawn(const std::array<int, 2>& counts) {
+    if (int64_t(counts[0]) * counts[1] <= kMaxAreaPoints)
+        return counts;
+    const int fewer = std::min({counts[0], counts[1], kMaxAlongSide});
+    const int more = kMaxAreaPoints / fewer;
+    return counts[0] < counts[1] ? std::array{fewer, more} : std::array{more, fewer};
+}
+
+/// Returns the place of a light in a row of them that is 1 long, from -0.5 to 0.5.
+double place_in_row(int i, int count) {
+    return count > 1 ? i / (count - 1.0) - 0.5 : 0;
+}
+
+/// Returns how much longer a row of `drawn` lights is than one of `count`, so that the distances
+/// from the middle have the same variance. With jitter a light is anywhere within its cell.
+double spread_of(int drawn, int count, bool jitter) {
+    const auto variance = [](int n) { return (n + 1.0) / (n - 1); }; // x 12
+    if (drawn < 2)
+        return 1;
+    const double cell = jitter ? 1.0 / ((count - 1.0) * (count - 1)) : 0;
+    return std::sqrt((variance(count) + cell) / variance(drawn));
+}
+
 void add_light(const LightSource& source, const dmat4& placed, uint32_t group, Scene& scene) {
     Light light = source.light;
     light.group = group;
@@ -79,20 +100,24 @@ void add_light(const LightSource& source, const dmat4& placed, uint32_t group, S
     aim_from(light.position);
     if (source.projector)
         light.projector = projector_of(*source.projector, placed);
-    const auto [columns, rows] = source.counts;
-    light.color /= float(columns * rows);
-    const auto share = [](int i, int count) { return count > 1 ? i / (count - 1.0) - 0.5 : 0; };
+    const std::array<int, 2> counts = counts_drawn(source.counts);
+    light.area_points = uint32_t(counts[0] * counts[1]);
+    light.color /= float(light.area_points);
+    light.faces_places = source.orient && !source.illuminates;
+    const dvec2 spread(spread_of(counts[0], source.counts[0], source.jitter),
+                       spread_of(counts[1], source.counts[1], source.jitter));
     const dvec3 middle = light.position;
-    for (int i = 0; i < columns; ++i)
-        for (int j = 0; j < rows; ++j) {
-            dvec2 at(share(i, columns), share(j, rows));
+    const double radius = glm::length(dvec3(placed * dvec4(source.sides[0], 0)));
+    for (int i = 0; i < counts[0]; ++i)
+        for (int j = 0; j < counts[1]; ++j) {
+            dvec2 at(spread.x * place_in_row(i, counts[0]), spread.y * place_in_row(j, counts[1]));
             at = source.circular ? into_circle(at) : at;
             const dvec3 offset(placed * dvec4(at.x * source.sides[0] + at.y * source.sides[1], 0));
             if (source.illuminates) {
                 light.position = middle + offset;
                 aim_from(light.position);
             } else
-                light.shadow_offset = offset;
+                light.shadow_offset = light.faces_places ? dvec3(radius * at, 0) : offset;
             scene.lights.push_back(light);
         }
 }
@@ -146,11 +171,14 @@ Cover Gatherer::cover_of(const Object& object, const Inherited& from, bool in_so
     const Texture& texture = from.texture ? *from.texture : look_.defaults;
     const Pigment& pigment = texture.pigment;
     const bool on_uv = pigment.uv_mapping || from.uv_mapping;
-    const bool has_uv = !in_solid && (object.kind == "mesh" || object.kind == "mesh2");
+    const Shape* const shape = std::get_if<Shape>(&object.shape);
+    const bool on_corners =
+        object.kind == "mesh" || object.kind == "mesh2" || (shape && shape->corners_have_uv);
+    const bool has_uv = !in_solid && on_corners;
     const bool has_holes = pigment.holes && (!on_uv || has_uv);
     const Color& color = has_holes ? pigment.holes->color : pigment.color;
     materials_.set_has_uv(has_uv && !has_holes);
-    const bool in_formulas = on_uv && object.kind != "mesh" && object.kind != "mesh2";
+    const bool in_formulas = on_uv && !on_corners;
     materials_.set_to_uv(in_formulas ? to_uv_of(object, from.placed) : std::vector<TextureStep>());
     const uint32_t material =
         on_uv && !pigment.uv_mapping
@@ -160,10 +188,10 @@ Cover Gatherer::cover_of(const Object& object, const Inherited& from, bool in_so
     Cover cover{material};
     cover.curved = is_curved(object);
     cover.uv = materials_.is_on_uv(material);
-    if (on_uv && pigment.pattern && !materials_.maps_uv() && look_.tell)
+    if (on_uv && (pigment.pattern || texture.mix.pattern) && !materials_.maps_uv() && look_.tell)
         look_.tell({"uv_mapping of a shape", object.place,
-                    "uv_mapping of lathes, patches, parametrics and meshes in solids is left "
-                    "out"});
+                    "uv_mapping of lathes, patches, parametrics and meshes is left out in "
+                    "solids"});
     if (has_holes)
         cover.holes = holes.number(
             pigment, on_uv ? pigment.placed : from.texture_placed * pigment.placed, on_uv);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "importers/pov/material_table.h"
 
+#include "importers/pov/parse/texture.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -80,7 +82,8 @@ bool MaterialTable::has_part_on_uv(const ovc::Material& material) const {
     if (!material.mix)
         return false;
     const std::vector<TextureStop>& stops = scene_.textures[material.mix->texture].stops;
-    return std::any_of(stops.begin(), stops.end(),
+    return textures_.is_on_uv(material.mix->texture) ||
+           std::any_of(stops.begin(), stops.end(),
                        [&](const TextureStop& stop) { return on_uv_[stop.texture]; });
 }
 
@@ -91,12 +94,15 @@ void MaterialTable::mix(const Texture& texture, const dmat4& placed, const Place
     const dmat4 within = placed * texture.mix.placed;
     std::vector<uint32_t> materials;
     for (const MapStop& stop : map.stops) {
-        materials.push_back(number(*stop.texture, stop.texture->pigment.color, within, interior));
+        Texture part_of_map = *stop.texture;
+        if (texture.mix.uv_mapping)
+            place(part_of_map, texture.mix.placed);
+        materials.push_back(number(part_of_map, part_of_map.pigment.color, within, interior));
         const ovc::Material& part = scene_.materials[materials.back()];
         material.mirror = std::max(material.mirror, part.mirror);
         material.transmission = std::max(material.transmission, part.transmission);
     }
-    material.mix = textures_.of_materials(map, materials, within);
+    material.mix = textures_.of_materials(texture.mix, materials, placed);
 }
 
 Bump MaterialTable::bump(const Normal& normal, const dmat4& placed) {

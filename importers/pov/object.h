@@ -24,8 +24,8 @@ struct Shape {
     /// Lead from the shape's space to its texture coordinates, as x and y. Empty: they are x and y
     /// of the world, or the corners have some.
     std::vector<TextureStep> to_uv;
-    bool knows_uv = true;   // false where POV-Ray's texture coordinates are not among these
-    std::optional<Box> box; // bounds the shape; set only where cutting it takes long
+    bool corners_have_uv = false; // Facets::uv has them
+    std::optional<Box> box;       // bounds the shape; set only where cutting it takes long
 
     double triangles(int segments) const {
         return fixed + segments * (per_segment + segments * per_square);
@@ -57,6 +57,8 @@ struct LightSource {
     bool circular = false;    // the grid is pressed into a circle
     ObjectPtr projector;      // of projected_through; null: none
     bool illuminates = false; // light comes from all points of the grid, not only shadows
+    bool orient = false;      // the grid is a circle that faces the place that it lights
+    bool jitter = false;      // each light stands for the cell of the grid around it
 };
 
 struct Object {

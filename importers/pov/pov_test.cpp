@@ -528,7 +528,9 @@ TEST(PovScene, InteriorsHaveMedia) {
     ASSERT_TRUE(scene) << scene.error().message;
     ASSERT_EQ(scene->materials.at(0).media.size(), 2u);
     const Medium &glow = scene->materials[0].media[0], &fog = scene->materials[0].media[1];
-    EXPECT_EQ(glow.samples, 40u);
+    EXPECT_EQ(glow.samples, 11u) << "half as many, and one more";
+    EXPECT_EQ(glow.intervals, 2u);
+    EXPECT_EQ(fog.samples, 6u) << "povray's default";
     ASSERT_EQ(glow.densities.size(), 1u);
     EXPECT_LT(glm::length(glow.densities[0].at(dvec3(3, 0, 0))), 1e-12) << "it moves along";
     EXPECT_EQ(fog.phase, Medium::Phase::HenyeyGreenstein);
@@ -559,7 +561,7 @@ TEST(PovScene, LightsAreProjectedThroughObjects) {
 TEST(PovScene, AreaLightsAreGrids) {
     const Result<Scene> scene =
         parse("sphere { 0, 1 } light_source { y, rgb 6 area_light 4*x, 2*z, "
-              "3, 2 jitter adaptive 1 translate 5*y }");
+              "3, 2 adaptive 1 translate 5*y }");
     ASSERT_TRUE(scene);
     ASSERT_EQ(scene->lights.size(), 6u);
     for (const Light& light : scene->lights)
@@ -576,9 +578,29 @@ TEST(PovScene, AreaLightsAreGrids) {
     const Result<Scene> round = parse("light_source { 0, 1 area_light 2*x, 2*y, 3, 3 circular }");
     EXPECT_NEAR(glm::length(round->lights.at(0).shadow_offset), 1, 1e-12) << "a corner";
     EXPECT_EQ(round->lights.at(1).shadow_offset, dvec3(-1, 0, 0));
-    const Result<Scene> large = parse("light_source { y, 1 area_light x, z, 17, 1 }");
-    EXPECT_EQ(large->lights.size(), 6u);
-    EXPECT_EQ(large->omissions.at(0).sentence, "an area light has at most 6 x 6 lights");
+    const Result<Scene> facing =
+        parse("light_source { 0, 1 area_light 2*x, y, 2, 2 orient translate z }");
+    EXPECT_TRUE(facing->lights.at(0).faces_places);
+    EXPECT_NEAR(glm::length(facing->lights.at(0).shadow_offset), 1, 1e-12) << "as wide as long";
+    EXPECT_EQ(facing->lights.at(0).area_points, 4u);
+}
+
+/// Many lights are drawn by fewer, which lie as far from the middle as those do on average.
+TEST(PovScene, LargeAreaLightsAreDrawnByFewer) {
+    const auto moment = [](const std::string& words) {
+        const Result<Scene> scene = parse("light_source { y, 1 area_light 10*x, z, " + words + "}");
+        double sum = 0;
+        for (const Light& light : scene->lights)
+            sum += light.shadow_offset.x * light.shadow_offset.x / double(scene->lights.size());
+        return std::pair(scene->lights.size(), sum);
+    };
+    const double of_17 = 100.0 / 12 * 18 / 16, cell = 100.0 / 12 / (16 * 16);
+    EXPECT_EQ(moment("17, 1").first, 17u);
+    EXPECT_EQ(moment("17, 17").first, 144u);
+    EXPECT_EQ(moment("1000, 4").first, 144u);
+    EXPECT_NEAR(moment("17, 1").second, of_17, 1e-9);
+    EXPECT_NEAR(moment("17, 17").second, of_17, 1e-9);
+    EXPECT_NEAR(moment("17, 17 jitter").second, of_17 + cell, 1e-9);
 }
 
 TEST(PovWarnings, AreCountedOrErrors) {

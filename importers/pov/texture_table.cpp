@@ -146,12 +146,22 @@ PlacedTexture TextureTable::of_pigments(const PatternMap& map, const dmat4& plac
     return placed_texture(number(map), placed);
 }
 
-PlacedTexture TextureTable::of_materials(const PatternMap& map, std::span<const uint32_t> materials,
+PlacedTexture TextureTable::of_materials(const Pigment& mix, std::span<const uint32_t> materials,
                                          const dmat4& placed) {
+    const PatternMap& map = *mix.pattern;
     ovc::Texture texture{pattern_of(map), {}};
     for (size_t i = 0; i < map.stops.size(); ++i)
         texture.stops.push_back({map.stops[i].at, {}, materials[i]});
-    return placed_texture(add(std::move(texture), /* is_mix= */ true), placed);
+    texture.on_uv = has_uv_ && (mix.uv_mapping || map.on_corners);
+    const bool in_formulas = mix.uv_mapping && !has_uv_ && !to_uv_.empty();
+    if (!texture.on_uv && !in_formulas)
+        return placed_texture(add(std::move(texture), /* is_mix= */ true), placed * mix.placed);
+    std::vector<TextureStep>& steps = texture.pattern.steps;
+    if (!map.on_corners)
+        put_in_front(mix.placed, texture.pattern);
+    if (in_formulas)
+        steps.insert(steps.begin(), to_uv_.begin(), to_uv_.end());
+    return placed_texture(add(std::move(texture), /* is_mix= */ true), dmat4(1));
 }
 
 ProgramPtr color_program(const Pigment& pigment) {

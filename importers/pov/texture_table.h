@@ -35,8 +35,8 @@ public:
     /// Does the same for the color of a density.
     PlacedTexture of_density(const Pigment& density, const dmat4& placed);
 
-    /// Does the same for a mix of materials, one for each stop.
-    PlacedTexture of_materials(const PatternMap& map, std::span<const uint32_t> materials,
+    /// Does the same for the pattern of a mix of materials, one for each stop.
+    PlacedTexture of_materials(const Pigment& mix, std::span<const uint32_t> materials,
                                const dmat4& placed);
 
     /// Returns the index of a texture of the pigment in its parent's space.

@@ -11,8 +11,12 @@
 
 namespace ovc {
 
-/// The max samples of a medium along a ray. Each may spawn a shadow ray for each light.
-inline constexpr uint32_t kMaxMediumSamples = 64;
+/// The max places along a ray in which media scatter light. Each may spawn a shadow ray for each
+/// light.
+inline constexpr uint32_t kMaxScatteringPlaces = 256;
+
+/// The media that fill the way of a ray, all of them together.
+using MediaAlong = std::span<const Medium* const>;
 
 /// A place along a ray that scatters light towards its origin.
 struct ScatteringPlace {
@@ -28,14 +32,14 @@ struct ThroughMedia {
     std::vector<ScatteringPlace> scattering;
 };
 
-/// Returns what the media do on the ray's way up to `t`, which must be finite. textures: of their
-/// densities.
-ThroughMedia through_media(std::span<const Texture> textures, std::span<const Medium> media,
-                           const Ray& ray, double t);
+/// Returns what the media do on the ray's way between the first and the last of `ends`, values of t
+/// that rise. They cut it where the light changes. textures: of the media's densities.
+ThroughMedia through_media(std::span<const Texture> textures, MediaAlong media, const Ray& ray,
+                           std::span<const double> ends);
 
 /// Returns the share of light that comes through the media, which are looked at in a few places.
-vec3 share_through_media(std::span<const Texture> textures, std::span<const Medium> media,
-                         const Ray& ray, double t);
+vec3 share_through_media(std::span<const Texture> textures, MediaAlong media, const Ray& ray,
+                         double t);
 
 /// Returns whether the scene has media anywhere.
 bool has_media(const Scene& scene);

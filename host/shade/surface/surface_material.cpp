@@ -111,7 +111,8 @@ static vec3 add_mix(const Scene& scene, const PlacedTexture& placed, const Textu
         for_each_averaged(mix.stops, add_stop);
         return through;
     }
-    const PatternPlace place = evaluate(scene.textures, mix.pattern, placed.at(point));
+    const PatternPlace place =
+        evaluate(scene.textures, mix.pattern, mix.on_uv ? moved_to_uv(point) : placed.at(point));
     const Between where = between(
         mix.stops.size(), [&](size_t i) { return mix.stops[i].at; }, place.value,
         is_discrete(mix.pattern.kind));

@@ -5,8 +5,6 @@
 #include "importers/pov/values/transform.h"
 #include "importers/pov/words/block.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -55,26 +53,16 @@ bool parse_light_part(Reader& reader, Words& words, Light& light) {
     return true;
 }
 
-/// The max lights along a side of an area light. Each takes a shadow ray at every hit.
-constexpr int kMaxAlongSide = 6;
-
 /// Reads `axis1, axis2, count1, count2`.
-void parse_area(Reader& reader, const Token& word, LightSource& source) {
+void parse_area(Reader& reader, LightSource& source) {
     for (dvec3& side : source.sides) {
         side = parse_vector(reader);
         reader.take_comma();
     }
-    bool fewer = false;
     for (int& count : source.counts) {
-        const int wanted = parse_int(reader, 1, 1 << 20, "the lights of an area_light");
+        count = parse_int(reader, 1, 1 << 20, "the lights of an area_light");
         reader.take_comma();
-        count = std::min(wanted, kMaxAlongSide);
-        fewer = fewer || count < wanted;
     }
-    if (fewer)
-        reader.omit(
-            "area_light", word.place,
-            fmt::format("an area light has at most {} x {} lights", kMaxAlongSide, kMaxAlongSide));
 }
 
 /// Reads `{ OBJECT }` behind a word of a light.
@@ -93,9 +81,8 @@ ObjectPtr parse_light_object(Reader& reader, std::string_view word) {
 }
 
 bool parse_other_part(Reader& reader, Words& words, LightSource& source) {
-    const Token token = reader.peek();
     if (reader.take("area_light")) {
-        parse_area(reader, token, source);
+        parse_area(reader, source);
     } else if (reader.take("looks_like")) {
         words.looks_like = parse_light_object(reader, "looks_like");
     } else if (reader.take("projected_through")) {
@@ -105,13 +92,13 @@ bool parse_other_part(Reader& reader, Words& words, LightSource& source) {
     else if (reader.take("circular"))
         source.circular = true;
     else if (reader.take("orient"))
-        reader.omit("area_light orient", token.place, "orient of an area light is left out");
+        source.orient = source.circular = true;
     else if (reader.take("area_illumination"))
         source.illuminates = parse_flag(reader);
     else if (reader.take("media_interaction"))
         source.light.lights_media = parse_flag(reader);
     else if (reader.take("jitter"))
-        parse_flag(reader);
+        source.jitter = parse_flag(reader);
     else if (reader.take("media_attenuation"))
         source.light.fades_in_air = parse_flag(reader);
     else if (reader.take("adaptive"))

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reads mesh and mesh2. The triangles of each texture become a child of the object.
+#include "importers/pov/parse/blended_texture.h"
 #include "importers/pov/parse/parse_object.h"
 #include "importers/pov/parse/texture.h"
 #include "importers/pov/shapes/shape.h"
@@ -9,22 +10,11 @@
 
 #include <algorithm>
 #include <cassert>
+#include <map>
 
 namespace ovc::pov {
 
 namespace {
-
-bool same_look(const Texture& a, const Texture& b) {
-    const auto color = [](const Color& c) {
-        return std::array<float, 5>{c.rgb.x, c.rgb.y, c.rgb.z, c.filter, c.transmit};
-    };
-    return color(a.pigment.color) == color(b.pigment.color) && a.pigment.holes == b.pigment.holes &&
-           a.pigment.uv_mapping == b.pigment.uv_mapping &&
-           ((!a.pigment.holes && !a.pigment.pattern) || a.pigment.placed == b.pigment.placed) &&
-           a.pigment.pattern == b.pigment.pattern && a.mix.pattern == b.mix.pattern &&
-           a.under == b.under && a.surface.finish == b.surface.finish &&
-           a.surface.ambient == b.surface.ambient && a.surface.emission == b.surface.emission;
-}
 
 /// Triangles by texture. The textures are in the order of their first use.
 class Groups {
@@ -86,6 +76,68 @@ void add_triangle(const Corner (&c)[3], bool smooth, const TriangleUv& uv, Facet
     facets.uv.insert(facets.uv.end(), uv.begin(), uv.end());
 }
 
+/// The textures of triangles whose corners have several.
+class CornerTextures {
+public:
+    /// Returns the texture of a triangle whose corners have these, and sets `uv` to what it is
+    /// blended by. Textures on texture coordinates have no room for that: the first corner's is
+    /// taken.
+    Texture of(const std::vector<Texture>& all, const std::array<int, 3>& numbers, TriangleUv& uv) {
+        const auto texture = [&](size_t i) { return all[size_t(numbers[i])]; };
+        if (numbers[0] == numbers[1] && numbers[1] == numbers[2])
+            return texture(0);
+        for (size_t i = 0; i < 3; ++i)
+            if (texture(i).pigment.uv_mapping)
+                return texture(0);
+        uv = {vec2(0), vec2(1, 0), vec2(0, 1)};
+        const auto known = known_.find(numbers);
+        if (known != known_.end())
+            return known->second;
+        std::vector<WeightedTexture> parts;
+        for (size_t i = 0; i < 3; ++i)
+            parts.push_back({texture(i), weight_of(i)});
+        return known_[numbers] = *blended(parts, /* on_corners= */ true);
+    }
+
+private:
+    /// Returns the formula of a corner's weight: u, v and what is missing to 1.
+    static ProgramPtr weight_of(size_t corner) {
+        ProgramBuilder weight;
+        if (corner > 0)
+            weight.add(FormulaStep::Kind::Argument, uint32_t(corner - 1));
+        else {
+            weight.constant(1);
+            for (uint32_t other = 0; other < 2; ++other) {
+                weight.add(FormulaStep::Kind::Argument, other);
+                weight.add(FormulaStep::Kind::Subtract);
+            }
+            weight.constant(0);
+            weight.add(FormulaStep::Kind::Builtin, builtin("max"), 2);
+        }
+        return weight.take();
+    }
+
+    std::map<std::array<int, 3>, Texture> known_;
+};
+
+/// Reads the textures of a triangle's corners, `{ NAME NAME NAME }`.
+std::vector<Texture> parse_corner_textures(Reader& reader) {
+    const Place at = reader.peek().place;
+    reader.expect('{', "texture_list");
+    std::vector<Texture> textures;
+    while (!reader.take('}'))
+        if (reader.take("texture"))
+            textures.push_back(parse_texture(reader));
+        else if (const auto texture = take_named_if<Texture>(reader))
+            textures.push_back(*texture);
+        else if (!reader.take(','))
+            reader.fail_here("'}' or a texture of a triangle's corner");
+    if (textures.size() != 3)
+        reader.fail(at, fmt::format("found {} textures of a triangle's corners, expected 3",
+                                    textures.size()));
+    return textures;
+}
+
 /// Reads the `{ a, na, b, nb, c, nc texture { … } }` of a mesh's triangle.
 void parse_mesh_triangle(Reader& reader, bool smooth, Groups& groups) {
     reader.expect('{', "triangle");
@@ -108,6 +160,8 @@ void parse_mesh_triangle(Reader& reader, bool smooth, Groups& groups) {
                 at = vec2(parse_vector2(reader));
                 reader.take_comma();
             }
+        else if (reader.take("texture_list"))
+            texture = CornerTextures().of(parse_corner_textures(reader), {0, 1, 2}, uv);
         else
             reader.fail_here("'}' or a texture of a triangle");
     }
@@ -130,7 +184,7 @@ std::vector<dvec3> parse_vectors(Reader& reader, std::string_view what) {
 
 struct Face {
     std::array<uint32_t, 3> corner{}, normal{}, uv{};
-    int texture = -1;
+    std::array<int, 3> textures{-1, -1, -1}; // of the corners
 };
 
 std::array<uint32_t, 3> parse_indices(Reader& reader) {
@@ -155,13 +209,12 @@ std::vector<Face> parse_faces(Reader& reader, bool textures) {
         reader.take_comma();
         Face face;
         face.corner = face.normal = face.uv = parse_indices(reader);
-        // A face has one texture, or one for each corner, of which we keep the first.
         for (int t = 0; textures && t < 3; ++t) {
             reader.take_comma();
             if (reader.peek().is('<') || reader.peek().is('}'))
                 break;
             const int texture = parse_int(reader, 0, 1 << 30, "the number of a texture");
-            face.texture = t == 0 ? texture : face.texture;
+            std::fill(face.textures.begin() + t, face.textures.end(), texture);
         }
         faces.push_back(face);
     }
@@ -221,10 +274,8 @@ std::vector<vec2> parse_uv_vectors(Reader& reader) {
 
 void add_faces(Reader& reader, const Mesh2& mesh, Groups& groups) {
     reader.grow(mesh.faces.size() * 3 * sizeof(Corner));
+    CornerTextures of_corners;
     for (const Face& face : mesh.faces) {
-        std::optional<Texture> texture;
-        if (face.texture >= 0 && face.texture < int(mesh.textures.size()))
-            texture = mesh.textures[size_t(face.texture)];
         Corner c[3];
         bool smooth = !mesh.normals.empty();
         for (size_t i = 0; i < 3; ++i) {
@@ -238,6 +289,11 @@ void add_faces(Reader& reader, const Mesh2& mesh, Groups& groups) {
         TriangleUv uv{};
         for (size_t i = 0; i < 3; ++i)
             uv[i] = face.uv[i] < mesh.uv.size() ? mesh.uv[face.uv[i]] : vec2(0);
+        std::optional<Texture> texture;
+        if (std::all_of(face.textures.begin(), face.textures.end(), [&](int number) {
+                return number >= 0 && number < int(mesh.textures.size());
+            }))
+            texture = of_corners.of(mesh.textures, face.textures, uv);
         add_triangle(c, smooth, uv, groups.of(texture));
     }
 }

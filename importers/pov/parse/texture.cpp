@@ -265,12 +265,26 @@ Material parse_material(Reader& reader) {
     return material;
 }
 
-/// Returns the texture that the map mixes.
-static Texture mix_of(PatternPtr map) {
+Texture mix_of(PatternPtr map) {
     Texture all = *map->stops.front().texture;
     all.mix = {};
     all.mix.pattern = std::move(map);
     return all;
+}
+
+Texture on_texture_coordinates(Texture texture) {
+    texture.pigment.uv_mapping = true;
+    if (texture.under)
+        texture.under = std::make_shared<const Texture>(on_texture_coordinates(*texture.under));
+    if (!texture.mix.pattern || texture.mix.pattern->on_corners)
+        return texture;
+    texture.mix.uv_mapping = true;
+    auto map = std::make_shared<PatternMap>(*texture.mix.pattern);
+    for (MapStop& stop : map->stops)
+        if (stop.texture)
+            stop.texture = std::make_shared<const Texture>(on_texture_coordinates(*stop.texture));
+    texture.mix.pattern = std::move(map);
+    return texture;
 }
 
 /// Reads `tiles { texture { … } tile2 texture { … } }`, a checker of two textures in old scenes,
@@ -344,6 +358,7 @@ static void take_mix(Reader& reader, PatternParts& mix, Texture& texture) {
         reader.fail(reader.place(),
                     "found colors in a map or list of a texture, expected textures");
     const Texture& first = *stops.front().texture;
+    const bool on_uv = texture.pigment.uv_mapping;
     texture.pigment = first.pigment;
     texture.surface = first.surface;
     texture.normal = first.normal;
@@ -351,6 +366,8 @@ static void take_mix(Reader& reader, PatternParts& mix, Texture& texture) {
         texture.pigment = {};
         texture.pigment.color = texture.mix.color;
     }
+    if (on_uv)
+        texture = on_texture_coordinates(texture);
 }
 
 Texture parse_texture_parts(Reader& reader, Texture texture, char end) {

@@ -23,6 +23,10 @@ std::vector<SlopeStop> parse_slope_map(Reader& reader);
 
 /// Returns `upper`, with its layers, on top of `lower`.
 Texture layered(const Texture& upper, const Texture& lower);
+/// Returns the texture that the map of textures mixes.
+Texture mix_of(PatternPtr map);
+/// Returns the texture with all its layers, and what it mixes, on texture coordinates.
+Texture on_texture_coordinates(Texture texture);
 /// Moves the texture with all its layers.
 void place(Texture& texture, const dmat4& by);
 /// Moves the interior's media.

@@ -3,6 +3,7 @@
 #include "importers/png.h"
 #include "importers/test_files.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace ovc {
@@ -213,9 +214,24 @@ TEST(PovUvMapping, MeshesKeepCoordinatesForPatternsOnThem) {
     EXPECT_TRUE(sphere.warnings.empty());
     EXPECT_FALSE(sphere.scene.textures[sphere.material().texture.value().texture].on_uv)
         << "they follow from the place";
-    const ReadPov lathe = read_beside_picture(
-        "lathe { linear_spline 2, <1, 0>, <1, 1> pigment { uv_mapping " + map + " } }");
-    EXPECT_EQ(lathe.warnings.size(), 1u);
+    const std::string lathe =
+        "lathe { linear_spline 2, <1, 0>, <1, 1> pigment { uv_mapping " + map + " } } ";
+    const ReadPov turned = read_beside_picture(lathe);
+    EXPECT_TRUE(turned.warnings.empty());
+    for (const vec2& uv : turned.scene.meshes.at(0).uv)
+        EXPECT_TRUE((uv.y == 0 || uv.y == 1) && uv.x >= 0 && uv.x <= 1);
+    EXPECT_FALSE(turned.scene.meshes[0].uv.empty());
+    EXPECT_EQ(read_beside_picture("intersection { " + lathe + "sphere { 0, 9 } }").warnings.size(),
+              1u);
+    const ReadPov patch = read_beside_picture(
+        "bicubic_patch { type 1 uv_vectors <0, 0> <2, 0> <2, 3> <0, 3> " +
+        std::string("0 x 2*x 3*x y <1,1,0> <2,1,0> <3,1,0> 2*y <1,2,0> <2,2,0> <3,2,0> ") +
+        "3*y <1,3,0> <2,3,0> <3,3,0> pigment { uv_mapping " + map + " } }");
+    EXPECT_EQ(patch.scene.meshes.at(0).uv.at(0), vec2(0));
+    float largest = 0;
+    for (const vec2& uv : patch.scene.meshes[0].uv)
+        largest = std::max(largest, uv.x + 10 * uv.y);
+    EXPECT_EQ(largest, 32) << "the third corner";
 }
 
 } // namespace

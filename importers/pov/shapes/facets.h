@@ -4,6 +4,7 @@
 
 #include "core/vec.h"
 
+#include <array>
 #include <vector>
 
 namespace ovc::pov {
@@ -16,7 +17,7 @@ struct Corner {
 /// Triangles of three corners each, counterclockwise seen from outside. Normals point outside.
 struct Facets {
     std::vector<Corner> corners;
-    std::vector<vec2> uv; // texture coordinates of the corners, where a mesh has them; else empty
+    std::vector<vec2> uv; // texture coordinates of the corners, or empty
     bool smooth = false;  // whether some corner has a normal of its own
 
     /// Adds a flat triangle, unless two of its corners are the same, as at a pole or a seam.
@@ -35,6 +36,13 @@ struct Facets {
         smooth = true;
         return true;
     }
+    /// Adds a triangle with texture coordinates, which then all triangles must have.
+    bool add(const std::array<Corner, 3>& c, const std::array<dvec2, 3>& at) {
+        const bool added = add(c[0], c[1], c[2]);
+        for (size_t i = 0; added && i < 3; ++i)
+            uv.emplace_back(at[i]);
+        return added;
+    }
     void clear() {
         corners.clear();
         uv.clear();
@@ -47,6 +55,10 @@ struct Facets {
     void add_quad(const Corner& a, const Corner& b, const Corner& c, const Corner& d) {
         add(a, b, c);
         add(a, c, d);
+    }
+    void add_quad(const std::array<Corner, 4>& c, const std::array<dvec2, 4>& at) {
+        add({c[0], c[1], c[2]}, {at[0], at[1], at[2]});
+        add({c[0], c[2], c[3]}, {at[0], at[2], at[3]});
     }
 };
 

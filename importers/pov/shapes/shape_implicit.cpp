@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reads implicit shapes: blob, quadric, cubic, quartic, poly and isosurface.
 #include "importers/csg/csg.h"
+#include "importers/pov/parse/blended_texture.h"
 #include "importers/pov/parse/parse_object.h"
+#include "importers/pov/parse/texture.h"
 #include "importers/pov/shapes/implicit.h"
 #include "importers/pov/shapes/polynomial.h"
 #include "importers/pov/shapes/shape.h"
@@ -76,6 +78,109 @@ std::function<double(const dvec3&)> blob_value(Components parts, double threshol
             sum += part(p);
         return threshold - sum;
     };
+}
+
+/// Returns the formula max(0, 1 - (x^2 + y^2 + dz^2))^2, with the distance dz of z from [0,
+/// length].
+ProgramPtr round_field() {
+    using FormulaOp = FormulaStep::Kind;
+    ProgramBuilder square;
+    square.add(FormulaOp::Argument, 0);
+    square.add(FormulaOp::Argument, 0);
+    square.add(FormulaOp::Multiply);
+    const ProgramPtr squared = square.take();
+    ProgramBuilder field;
+    field.constant(1);
+    for (uint32_t axis = 0; axis < 3; ++axis) {
+        field.add(FormulaOp::Argument, axis);
+        if (axis == 2) {
+            field.add(FormulaOp::Argument, 2);
+            field.constant(0);
+            field.add(FormulaOp::Builtin, builtin("max"), 2);
+            field.add(FormulaOp::Argument, 3);
+            field.add(FormulaOp::Builtin, builtin("min"), 2);
+            field.add(FormulaOp::Subtract);
+        }
+        field.call(squared, 1);
+        field.add(FormulaOp::Subtract);
+    }
+    field.constant(0);
+    field.add(FormulaOp::Builtin, builtin("max"), 2);
+    field.call(squared, 1);
+    return field.take();
+}
+
+/// Adds the field of a part at the formula's x, y and z, but not below 0.
+void add_field(const Component& part, const ProgramPtr& round, ProgramBuilder& to) {
+    using FormulaOp = FormulaStep::Kind;
+    const dvec3 way = part.b - part.a;
+    const double length = glm::length(way);
+    const dvec3 z = length > 0 ? way / length : dvec3(0, 0, 1);
+    const dvec3 x =
+        glm::normalize(glm::cross(z, std::abs(z.x) < 0.7 ? dvec3(1, 0, 0) : dvec3(0, 1, 0)));
+    const dvec3 y = glm::cross(z, x);
+    for (const dvec3& axis : {x, y, z}) {
+        const dvec4 row =
+            glm::transpose(part.to_own) * dvec4(axis, -glm::dot(axis, part.a)) / part.radius;
+        to.constant(row.w);
+        for (uint32_t i = 0; i < 3; ++i) {
+            to.constant(row[int(i)]);
+            to.add(FormulaOp::Argument, i);
+            to.add(FormulaOp::Multiply);
+            to.add(FormulaOp::Add);
+        }
+    }
+    to.constant(length / part.radius);
+    to.call(round, 4);
+    to.constant(std::max(part.strength, 0.0));
+    to.add(FormulaOp::Multiply);
+}
+
+/// Returns the texture of a blob whose parts have these, or none.
+std::optional<Texture> blob_texture(const Components& parts, const std::vector<Texture>& textures) {
+    assert(parts.size() == textures.size());
+    const ProgramPtr round = round_field();
+    std::vector<WeightedTexture> weighted;
+    std::vector<bool> done(parts.size());
+    for (size_t first = 0; first < parts.size(); ++first) {
+        if (done[first])
+            continue;
+        ProgramBuilder sum;
+        sum.constant(0);
+        for (size_t i = first; i < parts.size(); ++i)
+            if (!done[i] && same_look(textures[first], textures[i])) {
+                done[i] = true;
+                add_field(parts[i], round, sum);
+                sum.add(FormulaStep::Kind::Add);
+            }
+        const ProgramPtr weight = sum.take();
+        if (!weight)
+            return std::nullopt;
+        weighted.push_back({textures[first], weight});
+    }
+    return weighted.empty() ? std::nullopt : blended(weighted, /* on_corners= */ false);
+}
+
+/// Gives a blob the textures of its parts, of which those without one take the blob's.
+void blend_textures(Reader& reader, const Components& parts,
+                    const std::vector<std::optional<Texture>>& own, Object& object) {
+    if (std::none_of(own.begin(), own.end(), [](const auto& one) { return one.has_value(); }))
+        return;
+    Texture rest = object.texture.value_or(reader.defaults);
+    if (object.texture)
+        place(rest, glm::inverse(object.placed));
+    std::vector<Texture> all;
+    for (const std::optional<Texture>& one : own)
+        all.push_back(one.value_or(rest));
+    object.texture = blob_texture(parts, all);
+    if (object.texture) {
+        place(*object.texture, object.placed);
+        return;
+    }
+    object.texture = all.front();
+    place(*object.texture, object.placed);
+    reader.omit("blob texture", object.place,
+                "a blob of that many parts has the texture of its first part throughout");
 }
 
 /// The field refers to the parts.
@@ -262,6 +367,7 @@ Container parse_container(Reader& reader) {
 
 void parse_blob(Reader& reader, Object& object) {
     Components parts;
+    std::vector<std::optional<Texture>> textures;
     double threshold = 1;
     Box box;
     for (;;) {
@@ -285,23 +391,20 @@ void parse_blob(Reader& reader, Object& object) {
             break;
         else
             continue;
-        if (holder.texture && !object.texture) {
-            object.texture = holder.texture;
-            reader.omit("blob texture", object.place,
-                        "a blob has the texture of its first part throughout");
-        }
         if (!(part.radius > 0))
             continue;
+        textures.push_back(holder.texture);
         place_component(part, holder.placed);
         if (part.strength > 0)
             box.add(part.box);
         parts.push_back(part);
     }
-    object.shape = kept(box, [=, parts = std::move(parts)](int segments, bool, Facets& out) {
+    object.shape = kept(box, [=](int segments, bool, Facets& out) {
         if (!box.empty())
             cut_field(blob_field(parts, threshold), box, cells_of(parts, box, segments), out);
     });
     parse_modifiers(reader, object);
+    blend_textures(reader, parts, textures, object);
 }
 
 void parse_quadric(Reader& reader, Object& object) {

@@ -32,12 +32,18 @@ Bounds bounds_of(const Container& container) {
     return {container.box, false};
 }
 
+/// A corner with its u and v.
+struct UvCorner : Corner {
+    dvec2 uv;
+};
+
 /// Returns the part of a convex polygon that lies within one of the limits.
 /// Based on: Sutherland and Hodgman 1974, "Reentrant Polygon Clipping".
-std::vector<Corner> cut_off(const std::vector<Corner>& polygon, const Bounds& bounds, int limit) {
-    std::vector<Corner> kept;
+std::vector<UvCorner> cut_off(const std::vector<UvCorner>& polygon, const Bounds& bounds,
+                              int limit) {
+    std::vector<UvCorner> kept;
     for (size_t i = 0; i < polygon.size(); ++i) {
-        const Corner &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
+        const UvCorner &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
         const double out_a = bounds.outside(a.position, limit);
         const double out_b = bounds.outside(b.position, limit);
         if (!(out_a > 0))
@@ -45,7 +51,8 @@ std::vector<Corner> cut_off(const std::vector<Corner>& polygon, const Bounds& bo
         if ((out_a > 0) != (out_b > 0)) {
             const double share = out_a / (out_a - out_b);
             kept.push_back(
-                {glm::mix(a.position, b.position, share), glm::mix(a.normal, b.normal, share)});
+                {{glm::mix(a.position, b.position, share), glm::mix(a.normal, b.normal, share)},
+                 glm::mix(a.uv, b.uv, share)});
         }
     }
     return kept;
@@ -66,27 +73,28 @@ struct Surface3 {
         return point;
     }
 
-    Corner corner(const dvec2& uv) const {
+    UvCorner corner(const dvec2& uv) const {
         const dvec2 step = 1e-4 * (high - low);
         const dvec3 by_u = at(uv + dvec2(step.x, 0)) - at(uv - dvec2(step.x, 0));
         const dvec3 by_v = at(uv + dvec2(0, step.y)) - at(uv - dvec2(0, step.y));
         const dvec3 normal = glm::cross(by_u, by_v);
         const double length = glm::length(normal);
-        return {at(uv), length > 0 && std::isfinite(length) ? normal / length : dvec3(0)};
+        return {{at(uv), length > 0 && std::isfinite(length) ? normal / length : dvec3(0)}, uv};
     }
 
-    void add(std::vector<Corner> polygon, Facets& out) const {
+    void add(std::vector<UvCorner> polygon, Facets& out) const {
         for (const Corner& corner : polygon)
             if (!is_finite(corner.position))
                 return;
         for (int limit = 0; limit < bounds.limits(); ++limit)
             polygon = cut_off(polygon, bounds, limit);
         for (size_t i = 2; i < polygon.size(); ++i)
-            out.add(polygon[0], polygon[i - 1], polygon[i]);
+            out.add({polygon[0], polygon[i - 1], polygon[i]},
+                    {polygon[0].uv, polygon[i - 1].uv, polygon[i].uv});
     }
 
     void cut(int steps, Facets& out) const {
-        std::vector<Corner> below, above;
+        std::vector<UvCorner> below, above;
         for (int row = 0; row <= steps; ++row) {
             above.clear();
             for (int column = 0; column <= steps; ++column)
@@ -129,7 +137,7 @@ Shape parse_parametric(Reader& reader) {
             break;
     }
     Shape shape;
-    shape.knows_uv = false;
+    shape.corners_have_uv = true;
     shape.per_square = 2;
     shape.box = surface.bounds.box;
     shape.cut = [surface = std::move(surface)](int segments, bool, Facets& out) {

@@ -24,13 +24,14 @@ static Corner patch_corner(const std::array<dvec3, 16>& p, double u, double v) {
 }
 
 Shape parse_bicubic_patch(Reader& reader) {
+    std::array<dvec2, 4> uv = {dvec2(0, 0), dvec2(1, 0), dvec2(1, 1), dvec2(0, 1)};
     for (;;) {
         if (reader.take("type") || reader.take("flatness") || reader.take("u_steps") ||
             reader.take("v_steps"))
             parse_float(reader);
         else if (reader.take("uv_vectors"))
-            for (int i = 0; i < 4; ++i) {
-                parse_vector2(reader);
+            for (dvec2& corner : uv) {
+                corner = parse_vector2(reader);
                 reader.take_comma();
             }
         else if (!reader.take(','))
@@ -42,16 +43,21 @@ Shape parse_bicubic_patch(Reader& reader) {
         reader.take_comma();
     }
     Shape shape;
-    shape.knows_uv = false;
+    shape.corners_have_uv = true;
     shape.per_square = 2 / 16.0;
-    shape.cut = [points](int segments, bool, Facets& out) {
+    shape.cut = [points, uv](int segments, bool, Facets& out) {
         const int steps = segments / 4;
         for (int j = 0; j < steps; ++j)
             for (int i = 0; i < steps; ++i) {
                 const auto at = [&](int a, int b) {
                     return patch_corner(points, double(a) / steps, double(b) / steps);
                 };
-                out.add_quad(at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1));
+                const auto uv_at = [&](int a, int b) {
+                    const double s = double(a) / steps, t = double(b) / steps;
+                    return glm::mix(glm::mix(uv[0], uv[1], s), glm::mix(uv[3], uv[2], s), t);
+                };
+                out.add_quad({at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)},
+                             {uv_at(i, j), uv_at(i + 1, j), uv_at(i + 1, j + 1), uv_at(i, j + 1)});
             }
     };
     return shape;

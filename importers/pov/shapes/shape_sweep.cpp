@@ -74,7 +74,9 @@ struct ProfilePoint {
     dvec2 direction; // of the profile, of any length
 };
 
-void revolve(const std::vector<ProfilePoint>& profile, int segments, Facets& out) {
+/// ends: null, or the second texture coordinates of the profile's ends. The first goes around y.
+void revolve(const std::vector<ProfilePoint>& profile, int segments, const dvec2* ends,
+             Facets& out) {
     const auto corner = [&](const ProfilePoint& p, int step) -> Corner {
         const dvec2 c = on_circle(step, segments);
         const dvec3 outward(c.x, 0, -c.y);
@@ -82,9 +84,21 @@ void revolve(const std::vector<ProfilePoint>& profile, int segments, Facets& out
                 p.direction.y * outward - dvec3(0, p.direction.x, 0)};
     };
     for (size_t i = 0; i + 1 < profile.size(); ++i)
-        for (int step = 0; step < segments; ++step)
-            out.add_quad(corner(profile[i], step), corner(profile[i], step + 1),
-                         corner(profile[i + 1], step + 1), corner(profile[i + 1], step));
+        for (int step = 0; step < segments; ++step) {
+            const std::array<Corner, 4> quad = {
+                corner(profile[i], step), corner(profile[i], step + 1),
+                corner(profile[i + 1], step + 1), corner(profile[i + 1], step)};
+            if (!ends) {
+                out.add_quad(quad[0], quad[1], quad[2], quad[3]);
+                continue;
+            }
+            const auto at = [&](int s, size_t p) {
+                return dvec2(1 - double(s) / segments,
+                             glm::mix(ends->x, ends->y, double(p) / double(profile.size() - 1)));
+            };
+            out.add_quad(quad,
+                         {at(step, i), at(step + 1, i), at(step + 1, i + 1), at(step, i + 1)});
+        }
 }
 
 } // namespace
@@ -127,12 +141,13 @@ Shape parse_lathe(Reader& reader) {
     reader.take_comma();
     const std::vector<dvec2> points = parse_points(reader, parse_count(reader, 2));
     Shape shape;
-    shape.knows_uv = false;
+    shape.corners_have_uv = true;
     shape.per_segment = curve == Curve::Linear ? 2 * double(points.size()) : 0;
     shape.per_square = curve == Curve::Linear ? 0 : double(points.size()) / 4;
     shape.cut = [=](int segments, bool, Facets& out) {
         const size_t stride = curve == Curve::Bezier ? 4 : 1;
         const int steps = steps_of(curve, segments);
+        const size_t pieces = (points.size() - points_of_a_piece(curve)) / stride + 1;
         for (size_t piece = 0; piece + points_of_a_piece(curve) <= points.size(); piece += stride) {
             std::vector<ProfilePoint> profile;
             for (int i = 0; i <= steps; ++i) {
@@ -140,7 +155,8 @@ Shape parse_lathe(Reader& reader) {
                 p.at = curve_point(curve, &points[piece], double(i) / steps, &p.direction);
                 profile.push_back(p);
             }
-            revolve(profile, segments, out);
+            const dvec2 ends = dvec2(piece / stride, piece / stride + 1) / double(pieces);
+            revolve(profile, segments, &ends, out);
         }
     };
     return shape;
@@ -178,7 +194,7 @@ Shape parse_sor(Reader& reader) {
             }
         }
         assert(!profile.empty());
-        revolve(profile, segments, out);
+        revolve(profile, segments, nullptr, out);
         for (int step = 1; !open && step + 1 < segments; ++step)
             for (const bool top : {false, true}) {
                 const dvec2 at = (top ? profile.back() : profile.front()).at;
