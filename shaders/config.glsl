@@ -96,7 +96,7 @@
 #define OVC_GROUP_SIZE 64
 #endif
 // 1: instead of further candidates an answer tells how many rounds its ray took, and how many units
-// were fetched for it; for gpu/warp, and not with ray refill.
+// were fetched for it; for gpu/warp, and not with claims.
 #ifndef OVC_COUNTS
 #define OVC_COUNTS 0
 #endif

@@ -41,7 +41,7 @@ struct ShaderConfig {
     TexelReads reads = TexelReads::Images;
     uint32_t group_size = 64;         // of the compute kernel
     uint32_t max_rounds = 0x7fffffff; // of all loops of a ray
-    bool counts = false;              // answers tell rounds and units; not with refill
+    bool counts = false;              // answers tell rounds and units; not with claims
 
     bool operator==(const ShaderConfig&) const = default;
     /// All defines, one a line, in fixed order.

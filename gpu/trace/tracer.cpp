@@ -320,9 +320,10 @@ ShaderConfig Tracer::shader_config(RayKind kind, const KernelVariant& variant) c
     return config;
 }
 
-/// Whether subgroups claim their rays. A GPU gives groups to whatever part of it is free.
+/// Whether subgroups claim their rays. A GPU gives groups to whatever part of it is free, and a
+/// lane counts the units of one ray.
 bool Tracer::claims(const KernelVariant& variant) const {
-    return variant.compute && !gives_rays_all_rounds_ &&
+    return variant.compute && !gives_rays_all_rounds_ && !options_.counts &&
            (variant.refill || (device_.is_software && device_.can_refill()));
 }
 

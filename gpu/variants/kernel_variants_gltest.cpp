@@ -47,7 +47,7 @@ TEST_F(KernelVariantsGl, AreAllCompiled) {
                             std::string_view(renderer).find("512 bits") != std::string_view::npos;
         size_t compiled = 0;
         for (const ShaderConfig& config : kernel_variants()) {
-            if ((config.refill && !ballots) || (!config.compute && narrow))
+            if ((config.claims && !ballots) || (!config.compute && narrow))
                 continue;
             const Result<gl::Program> program = link_program(stages_of(config), config.defines());
             EXPECT_TRUE(program) << config.defines() << program.error().message;

@@ -331,9 +331,9 @@ TEST(QueuedConfig, RefusesWhatMeansNothing) {
         EXPECT_EQ(refusal(config_of(kind, {100})), "");
     EXPECT_EQ(refusal(config_of({"", OVC_LEVEL1_GRID, OVC_LEVEL1_BUILD_BOTTOM_UP})),
               "thesis-two-level: a grid is built top-down; it has no leaves to merge");
-    EXPECT_THAT(refusal(config_of(kinds()[0], {0, 28671})),
-                HasSubstr("the smallest that works is 28672 bytes"));
-    EXPECT_EQ(refusal(config_of(kinds()[0], {0, 28672})), "");
+    EXPECT_THAT(refusal(config_of(kinds()[0], {0, 28675})),
+                HasSubstr("the smallest that works is 28676 bytes"));
+    EXPECT_EQ(refusal(config_of(kinds()[0], {0, 28676})), "");
     ovc_scene_config config = config_of(kinds()[0]);
     config.kernel = OVC_KERNEL_COMPUTE;
     EXPECT_EQ(refusal(config), "thesis-two-level has no compute kernel");
