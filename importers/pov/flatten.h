@@ -9,7 +9,6 @@ namespace ovc::pov {
 
 /// The settings of a scene and of the import that its triangles and materials depend on.
 struct Look {
-    Texture defaults;
     vec3 ambient_light{1};
     vec3 irid_wavelengths{Finish{}.irid_wavelengths};
     bool before_3_7 = false; // the scene's version is below 3.7

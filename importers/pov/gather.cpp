@@ -168,7 +168,10 @@ void Gatherer::inherit(const Object& object, Inherited& from) {
 }
 
 Cover Gatherer::cover_of(const Object& object, const Inherited& from, bool in_solid) {
-    const Texture& texture = from.texture ? *from.texture : look_.defaults;
+    static const Texture kNoDefaults;
+    const Texture& texture = from.texture      ? *from.texture
+                             : object.defaults ? *object.defaults
+                                               : kNoDefaults;
     const Pigment& pigment = texture.pigment;
     const bool on_uv = pigment.uv_mapping || from.uv_mapping;
     const Shape* const shape = std::get_if<Shape>(&object.shape);

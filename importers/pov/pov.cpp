@@ -40,6 +40,7 @@ void parse_defaults(Reader& reader) {
         else
             reader.fail_here("a texture, pigment or finish");
     }
+    reader.shared_defaults = std::make_shared<const Texture>(reader.defaults);
 }
 
 /// Reads radiosity { } from its { on. Words that say how exactly povray is to compute it are
@@ -77,6 +78,7 @@ public:
         reader_.limits.tokens = max_words;
         reader_.limits.triangles = options.max_triangles;
         reader_.defaults = factory_default();
+        reader_.shared_defaults = std::make_shared<const Texture>(reader_.defaults);
         reader_.version = options.pov_version.value_or(reader_.version);
         reader_.version_given = options.pov_version.has_value();
         reader_.picture = options.size.value_or(reader_.picture);
@@ -98,7 +100,6 @@ public:
         scene.camera = camera_of(*camera_);
         scene.size = options_.size.value_or(size_of(*camera_));
         look_.eye = camera_->location;
-        look_.defaults = reader_.defaults;
         look_.max_triangles = options_.max_triangles;
         look_.tolerance = options_.tolerance;
         look_.tell = [&](const Note& note) { reader_.omit(note.kind, note.place, note.sentence); };

@@ -585,6 +585,17 @@ TEST(PovScene, AreaLightsAreGrids) {
     EXPECT_EQ(facing->lights.at(0).area_points, 4u);
 }
 
+TEST(PovScene, DefaultsAreOfObjectsThatFollow) {
+    const Result<Scene> scene =
+        parse("#default { pigment { rgb y } } sphere { 0, 1 } "
+              "#declare D = mesh { triangle { 0, x, y } } "
+              "#default { pigment { rgb x } } sphere { 9, 1 } object { D }");
+    ASSERT_TRUE(scene);
+    ASSERT_EQ(scene->materials.size(), 2u);
+    EXPECT_EQ(scene->materials[0].color, vec3(0, 1, 0)) << "also of the mesh";
+    EXPECT_EQ(scene->materials[1].color, vec3(1, 0, 0));
+}
+
 /// Many lights are drawn by fewer, which lie as far from the middle as those do on average.
 TEST(PovScene, LargeAreaLightsAreDrawnByFewer) {
     const auto moment = [](const std::string& words) {
