@@ -53,7 +53,7 @@ TEST_F(KernelVariantsGl, AreAllCompiled) {
             EXPECT_TRUE(program) << config.defines() << program.error().message;
             ++compiled;
         }
-        EXPECT_GT(compiled, 5u);
+        EXPECT_GE(compiled, 5u);
         RecordProperty("compiled", int(compiled));
     });
 }
