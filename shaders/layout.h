@@ -136,7 +136,7 @@
 #define OVC_LOCATION_RAYS 2  // of the uniform with the number of rays in the pass
 #define OVC_LOCATION_LANE_RAYS 3 // of the uniform with how many rays a subgroup claims for a lane
 
-#define OVC_BINDING_SHARES 0 // of the atomic counter of shares, with ray refill
+#define OVC_BINDING_SHARES 0 // of the atomic counter of claimed shares
 #define OVC_BINDING_NAMES 0 // the rays once more, to write names in their places
 #define OVC_BINDING_RAYS 1
 #define OVC_BINDING_ANSWERS 2

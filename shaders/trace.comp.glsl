@@ -127,7 +127,7 @@ int trace_share(int begin, int end, int max_rounds) {
 
 // A subgroup claims shares of the pass until there are none left. There are as many subgroups as
 // shares, each of which claims one at least; so a thread that gets less time takes fewer, instead
-// of being waited for (llvmpipe gives each thread as many groups before it begins: 5 to 11 % of the
+// of being waited for (llvmpipe gives each thread as many groups before it begins: 1 to 16 % of the
 // time of calls).
 void trace_shares() {
     int share = int(gl_SubGroupSizeARB) * lane_rays;

@@ -96,11 +96,16 @@ AnswerWords::AnswerWords(Ledger& ledger, uint32_t rays, bool copied_behind)
     fill_plane(3, rays_, OVC_NO_LEAF);
 }
 
+/// offset: in bytes.
+void AnswerWords::fill(uint64_t offset, size_t words, uint32_t word) const {
+    glClearNamedBufferSubData(buffer_.id(), GL_R32UI, GLintptr(offset),
+                              GLsizeiptr(words * sizeof(word)), GL_RED_INTEGER, GL_UNSIGNED_INT,
+                              &word);
+}
+
 void AnswerWords::fill_plane(int number, size_t rays, uint32_t word) const {
     assert(number >= 0 && number < 4 && rays <= rays_);
-    glClearNamedBufferSubData(buffer_.id(), GL_R32UI, GLintptr(offset_of(number)),
-                              GLsizeiptr(rays * sizeof(word)), GL_RED_INTEGER, GL_UNSIGNED_INT,
-                              &word);
+    fill(offset_of(number), rays, word);
 }
 
 void AnswerWords::dispatch(GLuint program, size_t rays, size_t group_rays, size_t lane_rays) {
@@ -110,9 +115,7 @@ void AnswerWords::dispatch(GLuint program, size_t rays, size_t group_rays, size_
     fill_plane(0, all, OVC_MISS);
     glProgramUniform1i(program, OVC_LOCATION_RAYS, GLint(all));
     if (lane_rays > 0) {
-        const uint32_t none = 0;
-        glClearNamedBufferSubData(buffer_.id(), GL_R32UI, GLintptr(offset_of(4)), kCounterBytes,
-                                  GL_RED_INTEGER, GL_UNSIGNED_INT, &none);
+        fill(offset_of(4), 1, 0);
         glBindBufferRange(GL_ATOMIC_COUNTER_BUFFER, OVC_BINDING_SHARES, buffer_.id(),
                           GLintptr(offset_of(4)), kCounterBytes);
         glProgramUniform1i(program, OVC_LOCATION_LANE_RAYS, GLint(lane_rays));

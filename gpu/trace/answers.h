@@ -132,13 +132,14 @@ class AnswerWords {
 public:
     AnswerWords(Ledger& ledger, uint32_t rays, bool copied_behind);
     /// group_rays: of a work group, on average. lane_rays: that a subgroup claims for each of its
-    /// lanes at a time, with ray refill; else 0.
+    /// lanes at a time; 0: it claims none.
     void dispatch(GLuint program, size_t rays, size_t group_rays, size_t lane_rays);
     /// Reads the answers of the first slots.
     void read(Answers& answers, size_t slots);
 
 private:
     uint64_t offset_of(int number) const { return uint64_t(number) * rays_ * sizeof(uint32_t); }
+    void fill(uint64_t offset, size_t words, uint32_t word) const;
     void fill_plane(int number, size_t rays, uint32_t word) const;
     void read_plane(int number, size_t slots, std::vector<uint32_t>& to);
 

@@ -320,7 +320,7 @@ TEST_F(KernelGl, AnEndBeforeTheBeginningIsNoRay) {
 }
 
 /// Lanes that take rays in turn share the rounds that a software renderer allows. Thousands for
-/// each ray are too many, so the pass is made again without ray refill.
+/// each ray are too many, so the pass is made again without shares.
 TEST_F(KernelGl, RaysOfThousandsOfRoundsAreAnsweredByTheKernel) {
     constexpr int kLayers = 4000;
     std::vector<vec3> corners;
