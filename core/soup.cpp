@@ -17,16 +17,6 @@ namespace ovc {
 
 namespace {
 
-/// Returns 0 for x within 2^-256, infinity for x beyond 2^256, and else x. So products of three
-/// differences, which decide hits, neither overflow nor lose a bit to underflow
-/// (docs/design/numerics.md, "What it covers").
-double in_range(double x) {
-    const double size = std::abs(x);
-    if (size < 0x1p-256)
-        return 0;
-    return size > 0x1p256 ? std::numeric_limits<double>::infinity() : x;
-}
-
 /// Returns whether each sum with a float is in range: a multiple of 2^-201, less than 2^256.
 bool keeps_floats_in_range(double origin) {
     const double size = std::abs(origin);

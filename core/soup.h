@@ -11,7 +11,9 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -21,6 +23,16 @@
 namespace ovc {
 
 using Triangle = std::array<dvec3, 3>;
+
+/// Returns 0 for x within 2^-256, infinity for x beyond 2^256, and else x. So products of three
+/// differences, which decide hits, neither overflow nor lose a bit to underflow
+/// (docs/design/numerics.md, "What it covers").
+inline double in_range(double x) {
+    const double size = std::abs(x);
+    if (size < 0x1p-256)
+        return 0;
+    return size > 0x1p256 ? std::numeric_limits<double>::infinity() : x;
+}
 
 /// The triangles of one mesh. Corner i of triangle p lies at origin + corners[3 p + i], added in
 /// double; in an instance, the transform then moves that point. A chunk is move-only: it owns its
@@ -92,7 +104,7 @@ public:
         return {origin_ + dvec3(c[0]), origin_ + dvec3(c[1]), origin_ + dvec3(c[2])};
     }
     /// Writes the coordinates of triangle(), corner by corner and kStride apart. Doubles beyond the
-    /// range of corners (in_range() in soup.cpp) may be left as they are.
+    /// range of corners (in_range()) may be left as they are.
     template <size_t kStride>
     void put_triangle(uint32_t prim, double* to) const {
         assert(prim < size());

@@ -11,7 +11,7 @@ namespace {
 
 BoundedSolution<double> solution_of(const PreparedRay& p, const Triangle& triangle) {
     MeetingLanes lanes{};
-    lanes.set(0, p.ray, triangle);
+    lanes.set(0, &p.ray, triangle);
     SolutionLanes solutions;
     solve(lanes, 1, solutions);
     return solutions.at(0);
@@ -77,7 +77,7 @@ Hit rounded_hit(const HitLanes& lanes, int lane, TriangleId id, uint32_t support
 
 Hit rounded_hit(const PreparedRay& p, const Triangle& triangle, TriangleId id, uint32_t support) {
     HitLanes lanes{};
-    lanes.set(0, p.ray, triangle);
+    lanes.set(0, &p.ray, triangle);
     round_hits(lanes, 1);
     return rounded_hit(lanes, 0, id, support);
 }

@@ -18,11 +18,12 @@ public:
     int room() const { return batch_.room(); }
     bool empty() const { return batch_.empty(); }
 
-    /// Adds a ray and a triangle. Needs room.
-    void add(const Ray& ray, const Triangle& triangle, TriangleId id, const Tag& tag) {
-        // No t beyond the largest double can be told.
-        const double t_max = std::min(ray.t_max, std::numeric_limits<double>::max());
-        batch_.add(ray, triangle, {ray.t_min, t_max, id, tag});
+    /// Adds a ray and a triangle. Needs room. The ray stays where it is until the batch is empty.
+    void add(const Ray* ray, const Triangle& triangle, TriangleId id, const Tag& tag) {
+        batch_.add(ray, triangle, {id, tag});
+    }
+    void add(const RaySpan& rays, size_t i, const Soup& soup, TriangleId id, const Tag& tag) {
+        batch_.add(rays, i, soup, id, {id, tag});
     }
 
     /// Empties the batch. Calls answered(answer, triangle, id, tag) for each pair, in the order in
@@ -32,17 +33,18 @@ public:
         batch_.finish(
             [&](const MeetingLanes& lanes, int count) { solve(lanes, count, solutions_); },
             [&](const MeetingLanes& lanes, int lane, const Entry& entry) {
+                // No t beyond the largest double can be told.
+                const Ray& ray = lanes.ray(lane);
+                const double t_max = std::min(ray.t_max, std::numeric_limits<double>::max());
                 answered(solutions_.missed[lane]
                              ? RefinedAnswer{true, std::nullopt}
-                             : refined_candidate(solutions_.at(lane), entry.t_min, entry.t_max,
-                                                 entry.id),
+                             : refined_candidate(solutions_.at(lane), ray.t_min, t_max, entry.id),
                          lanes.triangle(lane), entry.id, entry.tag);
             });
     }
 
 private:
     struct Entry {
-        double t_min, t_max;
         TriangleId id;
         Tag tag;
     };

@@ -47,7 +47,7 @@ TEST(DoubtBatch, AnswersAsForEachPairAlone) {
         DoubtBatch<size_t> batch;
         ASSERT_GE(batch.room(), int(triangles.size()));
         for (size_t i = 0; i < triangles.size(); ++i)
-            batch.add(ray, triangles[i], {0, uint32_t(i)}, 10 * i);
+            batch.add(&ray, triangles[i], {0, uint32_t(i)}, 10 * i);
         size_t next = 0;
         batch.finish([&](const RefinedAnswer& answer, const Triangle& triangle, TriangleId id,
                          size_t tag) {

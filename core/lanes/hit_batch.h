@@ -15,8 +15,9 @@ public:
     bool full() const { return batch_.full(); }
 
     /// Adds a ray and the triangle that it hits. Needs room: not full().
-    void add(const Ray& ray, const Triangle& triangle, TriangleId id, const Tag& tag) {
-        batch_.add(ray, triangle, {ray.t_min, ray.t_max, id, tag});
+    /// The ray stays where it is until the batch is empty.
+    void add(const RaySpan& rays, size_t i, const Soup& soup, TriangleId id, const Tag& tag) {
+        batch_.add(rays, i, soup, id, {id, tag});
     }
 
     /// Empties the batch. Calls found(hit, tag) for each hit, t, u and v rounded once; or
@@ -27,8 +28,8 @@ public:
         batch_.finish(round_hits, [&](const HitLanes& lanes, int lane, const Entry& entry) {
             const double t = lanes.t[lane], u = lanes.u[lane], v = lanes.v[lane];
             const bool inside = u >= 0 && v >= 0 && u + v <= 1;
-            if (lanes.known[lane] == HitLanes::kAll && inside && t >= entry.t_min &&
-                t <= entry.t_max)
+            const Ray& ray = lanes.ray(lane);
+            if (lanes.known[lane] == HitLanes::kAll && inside && t >= ray.t_min && t <= ray.t_max)
                 found(Hit{t, u, v, entry.id}, entry.tag);
             else
                 unclear(entry.tag);
@@ -37,7 +38,6 @@ public:
 
 private:
     struct Entry {
-        double t_min, t_max;
         TriangleId id;
         Tag tag;
     };

@@ -11,28 +11,31 @@
 
 namespace ovc {
 
-/// Eight rays, and a triangle for each.
+/// Eight rays, which lie elsewhere, and a triangle for each.
 struct MeetingLanes {
     static constexpr int kCount = 8;
-    using Vec = double[3][kCount];
 
-    alignas(64) Vec a, b, c, org, dir;
+    /// Coordinate `axis` of corner i lies in [3 i + axis], as Chunk::put_triangle() leaves it.
+    alignas(64) double corners[9][kCount];
+    const Ray* rays[kCount];
 
-    void set(int lane, const Ray& ray, const Triangle& triangle) {
-        for (int axis = 0; axis < 3; ++axis) {
-            a[axis][lane] = triangle[0][axis];
-            b[axis][lane] = triangle[1][axis];
-            c[axis][lane] = triangle[2][axis];
-            org[axis][lane] = ray.org[axis];
-            dir[axis][lane] = ray.dir[axis];
-        }
+    void set(int lane, const Ray* ray, const Chunk& chunk, uint32_t prim) {
+        rays[lane] = ray;
+        chunk.put_triangle<kCount>(prim, &corners[0][lane]);
     }
-    /// Returns the ray of a lane, without its ends.
-    Ray ray(int lane) const { return {at(org, lane), 0, at(dir, lane)}; }
-    Triangle triangle(int lane) const { return {at(a, lane), at(b, lane), at(c, lane)}; }
-
-private:
-    static dvec3 at(const Vec& v, int lane) { return {v[0][lane], v[1][lane], v[2][lane]}; }
+    void set(int lane, const Ray* ray, const Triangle& triangle) {
+        rays[lane] = ray;
+        for (int i = 0; i < 9; ++i)
+            corners[i][lane] = triangle[size_t(i / 3)][i % 3];
+    }
+    const Ray& ray(int lane) const { return *rays[lane]; }
+    Triangle triangle(int lane) const {
+        const auto corner = [&](int i) {
+            return dvec3(in_range(corners[3 * i][lane]), in_range(corners[3 * i + 1][lane]),
+                         in_range(corners[3 * i + 2][lane]));
+        };
+        return {corner(0), corner(1), corner(2)};
+    }
 };
 
 /// Rays that hit their triangles.

@@ -8,20 +8,37 @@
 #include "core/lanes/hit_lanes.h"
 #include "core/lanes/lanes_kernel.h"
 
+#include <limits>
+
 namespace ovc {
 
 template <class V>
 inline constexpr int kLanesOf = int(sizeof(V) / sizeof(double));
 
+/// Does what in_range() of core/soup.h does.
 template <class V>
-OVC_INLINE Vec3Of<V> load(const MeetingLanes::Vec& from, int lane) {
-    return {load<V>(from[0] + lane), load<V>(from[1] + lane), load<V>(from[2] + lane)};
+OVC_INLINE V in_range(V x) {
+    const V size = magnitude(x);
+    const V not_tiny = size < all_lanes<V>(0x1p-256) ? V{} : x;
+    return size > all_lanes<V>(0x1p256) ? all_lanes<V>(std::numeric_limits<double>::infinity())
+                                        : not_tiny;
 }
+/// Returns the vectors of some of the first `count` lanes. Those behind have the last one's ray.
 template <class V>
-OVC_INLINE MeetingVectors<V> vectors_of(const MeetingLanes& lanes, int lane) {
-    return MeetingVectors<V>(Meeting<V>{load<V>(lanes.a, lane), load<V>(lanes.b, lane),
-                                        load<V>(lanes.c, lane), load<V>(lanes.org, lane),
-                                        load<V>(lanes.dir, lane)});
+OVC_INLINE MeetingVectors<V> vectors_of(const MeetingLanes& lanes, int lane, int count) {
+    const Ray* rays[kLanesOf<V>];
+    for (int i = 0; i < kLanesOf<V>; ++i)
+        rays[i] = lanes.rays[smaller(lane + i, count - 1)];
+    V ray[8];
+    load_rays(rays, ray);
+    const auto corner = [&](int i) __attribute__((always_inline)) {
+        const auto axis = [&](int k) __attribute__((always_inline)) {
+            return in_range(load<V>(lanes.corners[3 * i + k] + lane));
+        };
+        return Vec3Of<V>{axis(0), axis(1), axis(2)};
+    };
+    return MeetingVectors<V>(Meeting<V>{
+        corner(0), corner(1), corner(2), {ray[0], ray[1], ray[2]}, {ray[4], ray[5], ray[6]}});
 }
 template <class V>
 OVC_INLINE void store(double* to, const V& lanes) {
@@ -32,7 +49,7 @@ OVC_INLINE void store(double* to, const V& lanes) {
 template <class V>
 OVC_INLINE void round_hits_by(HitLanes& lanes, int count) {
     for (int lane = 0; lane < count; lane += kLanesOf<V>) {
-        const MeetingVectors<V> vectors = vectors_of<V>(lanes, lane);
+        const MeetingVectors<V> vectors = vectors_of<V>(lanes, lane, count);
         const BoundedSolution<V> s = bounded_solution(vectors);
         const V inverse = 1 / s.value.det.hi;
         const auto over_det = [&](const DoubleDoubleOf<V>& value, V error)
@@ -69,7 +86,7 @@ OVC_INLINE void store(SolutionLanes::Number& to, int lane, const DoubleDoubleOf<
 template <class V>
 OVC_INLINE void solve_by(const MeetingLanes& lanes, int count, SolutionLanes& solutions) {
     for (int lane = 0; lane < count; lane += kLanesOf<V>) {
-        const BoundedSolution<V> s = bounded_solution(vectors_of<V>(lanes, lane));
+        const BoundedSolution<V> s = bounded_solution(vectors_of<V>(lanes, lane, count));
         store(solutions.det, lane, s.value.det, s.error.det);
         store(solutions.u, lane, s.value.u, s.error.u);
         store(solutions.v, lane, s.value.v, s.error.v);

@@ -3,7 +3,7 @@
 // RoundingBatch and DoubtBatch say what of.
 #pragma once
 
-#include "core/ray.h"
+#include "core/ray_span.h"
 #include "core/soup.h"
 
 #include <array>
@@ -20,11 +20,18 @@ public:
     bool full() const { return room() == 0; }
     bool empty() const { return count_ == 0; }
 
-    /// Adds a pair. Needs room.
-    void add(const Ray& ray, const Triangle& triangle, const Entry& entry) {
+    /// Adds a pair. Needs room. The ray stays where it is until the batch is empty.
+    void add(const Ray* ray, const Triangle& triangle, const Entry& entry) {
         assert(!full());
         lanes_.set(count_, ray, triangle);
         entries_[size_t(count_++)] = entry;
+    }
+    /// The same for one of many rays and a triangle of a soup.
+    void add(const RaySpan& rays, size_t i, const Soup& soup, TriangleId id, const Entry& entry) {
+        assert(!full() && soup.has(id));
+        const size_t lane = size_t(count_++);
+        lanes_.set(int(lane), rays.address(i, room_[lane]), soup.chunks[id.mesh], id.prim);
+        entries_[lane] = entry;
     }
 
     /// Empties the batch: calls compute(lanes, count), unless there is nothing in it, and then
@@ -42,6 +49,7 @@ public:
 private:
     Lanes lanes_{};
     std::array<Entry, Lanes::kCount> entries_{};
+    std::array<Ray, Lanes::kCount> room_; // for rays that are floats
     int count_ = 0;
 };
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "core/exact/double_double.h"
+#include "core/ray.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -69,6 +70,20 @@ OVC_INLINE void transpose(V (&rows)[n]) {
             if ((i & d) == 0)
                 swap_blocks<d>(rows[i], rows[i + d], std::make_index_sequence<n>());
         transpose<2 * d>(rows);
+    }
+}
+
+/// Loads a ray for each element of V. Column i of the eight holds double i of each.
+template <class V>
+OVC_INLINE void load_rays(const Ray* const* rays, V (&columns)[8]) {
+    constexpr int n = int(sizeof(V) / sizeof(double));
+    for (int column = 0; column < 8; column += n) {
+        V rows[n];
+        for (int i = 0; i < n; ++i)
+            rows[i] = load<V>(reinterpret_cast<const double*>(rays[i]) + column);
+        transpose(rows);
+        for (int i = 0; i < n; ++i)
+            columns[column + i] = rows[i];
     }
 }
 

@@ -171,24 +171,17 @@ OVC_INLINE void to_frame_by(const LanesFrame& frame, const RayLanes& all, const 
 
 template <class V>
 OVC_INLINE void gather_by(const Ray* const* rays, RayLanes& lanes) {
-    constexpr int n = int(sizeof(V) / sizeof(double));
-    double* const columns[8] = {lanes.org[0], lanes.org[1], lanes.org[2], lanes.t_min,
-                                lanes.dir[0], lanes.dir[1], lanes.dir[2], lanes.t_max};
-    for (int lane = 0; lane < RayLanes::kCount; lane += n)
-        for (int column = 0; column < 8; column += n) {
-            V rows[n];
-            for (int i = 0; i < n; ++i)
-                __builtin_memcpy(&rows[i], reinterpret_cast<const double*>(rays[lane + i]) + column,
-                                 sizeof(V));
-            transpose(rows);
-            for (int i = 0; i < n; ++i) {
-                const bool is_t = column + i == 3 || column + i == 7;
-                const V values = is_t ? rows[i] + 0.0 : rows[i]; // -0 becomes 0
-                __builtin_memcpy(columns[column + i] + lane, &values, sizeof(V));
-                if (column + i == 3)
-                    __builtin_memcpy(lanes.from + lane, &values, sizeof(V));
-            }
-        }
+    double* const to[8] = {lanes.org[0], lanes.org[1], lanes.org[2], lanes.t_min,
+                           lanes.dir[0], lanes.dir[1], lanes.dir[2], lanes.t_max};
+    for (int lane = 0; lane < RayLanes::kCount; lane += int(sizeof(V) / sizeof(double))) {
+        V columns[8];
+        load_rays(rays + lane, columns);
+        for (const int t : {3, 7})
+            columns[t] = columns[t] + 0.0; // -0 becomes 0
+        for (int i = 0; i < 8; ++i)
+            __builtin_memcpy(to[i] + lane, &columns[i], sizeof(V));
+        __builtin_memcpy(lanes.from + lane, &columns[3], sizeof(V));
+    }
 }
 
 } // namespace ovc

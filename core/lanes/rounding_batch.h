@@ -15,9 +15,10 @@ public:
     bool full() const { return batch_.full(); }
 
     /// Adds a ray and the triangle that it hits. support: as in Candidate. Needs room: not full().
-    void add(const Ray& ray, const Triangle& triangle, TriangleId id, uint32_t support,
+    /// The ray stays where it is until the batch is empty.
+    void add(const RaySpan& rays, size_t i, const Soup& soup, TriangleId id, uint32_t support,
              const Tag& tag) {
-        batch_.add(ray, triangle, {id, support, tag});
+        batch_.add(rays, i, soup, id, {id, support, tag});
     }
 
     /// Empties the batch. Calls rounded(hit, tag) for each hit, t, u and v rounded once.

@@ -76,7 +76,7 @@ private:
             is_done_ = found && note(nearest_.enter(*found, triangle), triangle);
             return is_done_;
         }
-        doubts_.add(p_.ray, triangle, id, {});
+        doubts_.add(&p_.ray, triangle, id, {});
         const double ends = latest_t(triangle);
         doubt_ends_ =
             doubts_.room() == MeetingLanes::kCount - 1 ? ends : std::max(doubt_ends_, ends);

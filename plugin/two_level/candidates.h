@@ -46,14 +46,14 @@ public:
     bool has_room() const { return count_ < asked_.size(); }
 
     /// Adds a ray, which does not see the triangle `skip`, and its candidates. Needs room.
-    void add(const Ray& ray, TriangleId skip, const Candidates& found, const BuiltScene& scene,
-             const Tag& tag) {
+    void add(const RaySpan& rays, size_t i, TriangleId skip, const Candidates& found,
+             const BuiltScene& scene, const Tag& tag) {
         assert(has_room());
         const auto add = [&](uint32_t number, bool certain) {
             if (pairs_.room() == 0)
                 test();
             const TriangleId id = scene.seen(number, skip);
-            pairs_.add(ray, scene.soup.triangle(id), id, {count_, certain});
+            pairs_.add(rays, i, scene.soup, id, {count_, certain});
         };
         asked_[count_] = {tag, {}, false};
         if (found.certain != OVC_MISS)

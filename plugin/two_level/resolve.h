@@ -24,7 +24,8 @@
 
 namespace ovc {
 
-inline constexpr size_t kRaysPerTask = 256; // in parallel loops over rays that are traced
+inline constexpr Hit kSomeHit{0, 0, 0, {0, 0}}; // of an occlusion ray, whose triangle is not kept
+inline constexpr size_t kRaysPerTask = 256;     // in parallel loops over rays that are traced
 
 /// Calls body(some, first) for rays by as many as there are lanes; first: the place of the first.
 template <class Body>
@@ -152,16 +153,25 @@ public:
         CandidateBatch<size_t> doubtful;
         Decided decided;
         std::vector<InDoubt> in_doubt;
+        // Without any more of an answer, where nothing else is known about rays.
+        const bool names_suffice = are_whole_ && tracing_.options.certify && query_.without.empty();
         const auto look = [&](size_t j) {
             const Answer answer = answers[first + j];
             if (!resolve_one(rays[j], answer, decided, go_on))
                 in_doubt.push_back({rays[j], begin_of(rays[j], answer)});
         };
         const auto enter = [&](const Hit& hit, size_t j) {
-            if (hit.t > exclusion(rays[j]).after.t)
-                enter_certain(rays[j], answers[first + j], hit, go_on);
+            if (names_suffice)
+                query_.set(rays[j], hit);
+            else if (hit.t > exclusion(rays[j]).after.t)
+                enter_certain(rays[j], answers[first + j].where, hit, go_on);
             else
                 look(j);
+        };
+        const auto add_certain = [&](TriangleId id, size_t j) {
+            certain.add(query_.rays, rays[j], scene_.soup, id, j);
+            if (certain.full())
+                certain.finish(enter, look);
         };
         const auto enter_nearest = [&](const Candidate& nearest, size_t j) {
             const Answer answer = answers[first + j];
@@ -172,11 +182,21 @@ public:
         for (size_t j = 0; j < rays.size(); ++j) {
             if (j + kAhead < rays.size())
                 fetch_ahead(answers, first + j + kAhead);
+            const uint32_t name = answers.names[first + j];
+            if (names_suffice && (name == OVC_MISS || name < OVC_MAX_TRIANGLES)) {
+                if (name == OVC_MISS)
+                    query_.set_miss(rays[j]);
+                else if (Query::kAnyHit)
+                    query_.set(rays[j], kSomeHit);
+                else
+                    add_certain(scene_.numbers.id(name), j);
+                continue;
+            }
             const Answer answer = answers[first + j];
             if (!takes(rays[j], answer))
                 continue;
             if (has_plain_candidates(rays[j], answer)) {
-                doubtful.add(query_.rays[rays[j]], exclusion(rays[j]).skip, candidates_of(answer),
+                doubtful.add(query_.rays, rays[j], exclusion(rays[j]).skip, candidates_of(answer),
                              scene_, j);
                 if (!doubtful.has_room())
                     doubtful.finish(enter_nearest, look);
@@ -186,10 +206,7 @@ public:
                 look(j);
                 continue;
             }
-            const TriangleId id = scene_.seen(answer.prim, exclusion(rays[j]).skip);
-            certain.add(query_.rays[rays[j]], scene_.soup.triangle(id), id, j);
-            if (certain.full())
-                certain.finish(enter, look);
+            add_certain(scene_.seen(answer.prim, exclusion(rays[j]).skip), j);
         }
         certain.finish(enter, look);
         doubtful.finish(enter_nearest, look);
@@ -301,10 +318,10 @@ private:
     }
 
     template <class GoOn>
-    void enter_certain(uint32_t i, const Answer& answer, const Hit& hit, GoOn&& go_on) {
+    void enter_certain(uint32_t i, uint32_t where, const Hit& hit, GoOn&& go_on) {
         query_.set(i, hit);
-        if (answer.where != OVC_NO_LEAF)
-            go_on(i, answer.where, std::nextafter(hit.t, std::numeric_limits<double>::max()));
+        if (where != OVC_NO_LEAF)
+            go_on(i, where, std::nextafter(hit.t, std::numeric_limits<double>::max()));
     }
 
     void enter_all(Decided& decided) {
@@ -313,10 +330,9 @@ private:
 
     /// Enters a hit that exact arithmetic has decided, or none.
     void enter_decided(uint32_t i, const Candidate& found, Decided& decided) {
-        const TriangleId id = found.hit.id;
         if (Query::kAnyHit || !found.hit.is_hit())
             return query_.set(i, found.hit);
-        decided.add(query_.rays[i], scene_.soup.triangle(id), id, found.support, i);
+        decided.add(query_.rays, i, scene_.soup, found.hit.id, found.support, i);
         if (decided.full())
             enter_all(decided);
     }
@@ -341,7 +357,7 @@ private:
             return true;
         }
         if (Query::kAnyHit && found.is_certain_hit() && query_.without.after.empty()) {
-            query_.set(i, Hit{0, 0, 0, {0, 0}}); // the triangle is not kept
+            query_.set(i, kSomeHit);
             return true;
         }
         const PreparedRay p = prepared(i);
