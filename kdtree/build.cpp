@@ -72,8 +72,8 @@ public:
         if (fragments.size() >= kWorthIsolating)
             add(options_.progress, 0);
         const Split split = depth < max_depth_ ? choose_split(fragments, cell) : Split{};
-        const double parts = double(split.below + split.above);
-        const bool too_many = !options_.max_leaf_triangles && parts > references;
+        const bool too_many =
+            !options_.max_leaf_triangles && double(split.below + split.above) > references;
         if (!split.found() || too_many) {
             tree.nodes.push_back(
                 KdNode::leaf(uint32_t(tree.references.size()), uint32_t(fragments.size())));
@@ -86,7 +86,8 @@ public:
         below_cell.hi[split.axis] = above_cell.lo[split.axis] = split.position;
         std::vector<Fragment> above = divide(fragments, split, below_cell, above_cell);
 
-        const double for_below = references * double(split.below) / parts,
+        const double for_below = references * double(fragments.size()) /
+                                 double(std::max<size_t>(fragments.size() + above.size(), 1)),
                      for_above = references - for_below;
         const uint32_t node = uint32_t(tree.nodes.size());
         tree.nodes.push_back(KdNode::inner(split.axis, split.position));
@@ -176,10 +177,17 @@ private:
         const auto bin_of = [&](double x, int axis) {
             return std::clamp(int((x - cell.lo[axis]) * scale[axis]), 0, kBins - 1);
         };
+        // Cells are closed: a fragment that begins where a bin does is in the bin before as well,
+        // such as all of a floor, which a cut there would put on both sides.
+        const auto first_bin_of = [&](double x, int axis) {
+            const double place = (x - cell.lo[axis]) * scale[axis];
+            const int bin = int(place);
+            return std::clamp(bin == place ? bin - 1 : bin, 0, kBins - 1);
+        };
         const auto fill = [&](size_t first, size_t last, Bins bins) {
             for (size_t i = first; i < last; ++i)
                 for (int axis = 0; axis < 3; ++axis) {
-                    ++bins.begin[axis][bin_of(fragments[i].box.lo[axis] - padding, axis)];
+                    ++bins.begin[axis][first_bin_of(fragments[i].box.lo[axis] - padding, axis)];
                     ++bins.end[axis][bin_of(fragments[i].box.hi[axis] + padding, axis)];
                 }
             return bins;

@@ -88,6 +88,23 @@ TEST(KdTreeBuild, ReferencesStayBoundedWhereAllOverlapInAPlane) {
     EXPECT_TRUE(intersect(tree, soup, Ray{dvec3(0.1, 0.2, 5), 0, dvec3(0, 0, -1)}).is_hit());
 }
 
+/// As letters before a large floor: a cut in the middle of the scene runs along all triangles.
+TEST(KdTreeBuild, CutsTrianglesInThePlaneInTheMiddle) {
+    test::Random random(7);
+    std::vector<vec3> corners;
+    for (int i = 0; i < 8000; ++i) {
+        const vec3 at(random(0, 9), random(0, 9), 0);
+        corners.insert(corners.end(), {at, at + vec3(0.1f, 0, 0), at + vec3(0, 0.1f, 0)});
+    }
+    for (const float end : {-1000.0f, 1000.0f})
+        corners.insert(corners.end(), {vec3(end), {end, -end, end}, {-end, end, end}});
+    const KdTree tree = build_kd_tree(test::one_chunk(std::move(corners)));
+    for (const KdNode& node : tree.nodes)
+        if (node.is_leaf()) {
+            EXPECT_LE(node.count(), 100u);
+        }
+}
+
 TEST(KdTreeBuild, IsTheSameOnEveryRun) {
     const Soup soup = test::random_soup(6, 20000, 0.02);
     const KdTree a = build_kd_tree(soup);

@@ -46,8 +46,26 @@ double power_of_distance(const dvec3& way, const CrackleMetric& metric) {
     if (metric.metric == 2)
         return glm::dot(a, a) + metric.offset * metric.offset;
     const double m = metric.metric;
-    return std::pow(a.x, m) + std::pow(a.y, m) + std::pow(a.z, m) +
-           std::pow(std::abs(metric.offset), m);
+    const double offset = metric.offset == 0 ? 0 : std::pow(std::abs(metric.offset), m);
+    return std::pow(a.x, m) + std::pow(a.y, m) + std::pow(a.z, m) + offset;
+}
+
+double distance_of(double power, const CrackleMetric& metric) {
+    return metric.metric == 2 ? std::sqrt(power) : std::pow(power, 1 / metric.metric);
+}
+
+/// Returns the cells up to two away from one, the nearest first.
+const std::vector<dvec3>& cells_around() {
+    static const std::vector<dvec3> kAll = [] {
+        std::vector<dvec3> all;
+        for (int i = 0; i < 125; ++i)
+            all.push_back(dvec3(i % 5 - 2, i / 5 % 5 - 2, i / 25 - 2));
+        std::stable_sort(all.begin(), all.end(), [](const dvec3& a, const dvec3& b) {
+            return glm::dot(a, a) < glm::dot(b, b);
+        });
+        return all;
+    }();
+    return kAll;
 }
 
 } // namespace
@@ -59,26 +77,25 @@ double cell_value(const dvec3& at) {
 NearestPoints nearest_points(const dvec3& at, const CrackleMetric& metric) {
     const dvec3 low = glm::floor(at + kOffGrid);
     NearestPoints found{{1e300, 1e300, 1e300}, at};
+    double third = 1e300; // the distance to the third nearest point
     // The three nearest points lie within two cells: each cell around has a point of its own.
-    for (int i = 0; i < 125; ++i) {
-        const dvec3 cell(i % 5 - 2, i / 5 % 5 - 2, i / 25 - 2);
-        const dvec3 gap = glm::max(dvec3(0), glm::max(low + cell - at, at - low - cell - 1.0));
-        if (power_of_distance(gap, metric) >= found.distance[2])
+    for (const dvec3& cell : cells_around()) {
+        const dvec3 gap = glm::max(low + cell - at, at - low - cell - 1.0);
+        if (max_component(gap) >= third) // in any metric the cell is farther away
             continue;
         const dvec3 point = point_of_cell(low + cell);
         const double away = power_of_distance(point - at, metric);
         if (away < found.distance[0])
             found.nearest = point;
-        for (size_t k = 0; k < 3; ++k)
-            if (away < found.distance[k]) {
-                std::copy_backward(found.distance.begin() + long(k), found.distance.end() - 1,
-                                   found.distance.end());
-                found.distance[k] = away;
-                break;
-            }
+        const auto after = std::upper_bound(found.distance.begin(), found.distance.end(), away);
+        if (after == found.distance.end())
+            continue;
+        std::copy_backward(after, found.distance.end() - 1, found.distance.end());
+        *after = away;
+        third = distance_of(found.distance[2], metric);
     }
     for (double& away : found.distance)
-        away = metric.metric == 2 ? std::sqrt(away) : std::pow(away, 1 / metric.metric);
+        away = distance_of(away, metric);
     return found;
 }
 
