@@ -119,6 +119,7 @@ bool LinearInput::open(const std::string& name, OIIO::ImageSpec& spec) {
 }
 
 bool LinearInput::seek_subimage(int subimage, int miplevel) {
+    const lock_guard lock(*this);
     if (!input_ || subimage != 0 || miplevel < 0)
         return false;
     if (has_mipmaps_) {
@@ -191,7 +192,9 @@ bool LinearInput::make_pyramid() {
     return true;
 }
 
+/// Several threads of the cache may ask for tiles at once.
 bool LinearInput::read_native_tile(int subimage, int miplevel, int x, int y, int z, void* data) {
+    const lock_guard lock(*this);
     if (!seek_subimage(subimage, miplevel))
         return false;
     if (has_mipmaps_) {

@@ -269,6 +269,26 @@ TEST(Textures, KeepsToItsMemoryAndAnswersAlikeOnAllThreads) {
     EXPECT_GT(api().memory_used(large.handle()), uint64_t(11) << 20);
 }
 
+TEST(Textures, ThreadsMayAskForAPictureAtOnce) {
+    constexpr int kSize = 256;
+    const TestPicture picture("-asked.png", kSize, kSize, 3, OIIO::TypeUInt8,
+                              std::vector<float>(3 * kSize * kSize, 1.0f));
+    for (int run = 0; run < 30; ++run) {
+        const Cache cache;
+        const uint32_t number = cache.open(picture.path);
+        std::vector<std::thread> threads;
+        for (int i = 0; i < 4; ++i)
+            threads.emplace_back([&, i] {
+                // Each asks for a tile of its own.
+                const ovc_texture_area area = point_at(
+                    float(i % 2) * 0.5f + 0.2f, float(i / 2) * 0.5f + 0.2f, OVC_TEXELS_MIPMAPS);
+                EXPECT_NEAR(cache.sample(number, area)[0], 1, 1e-3);
+            });
+        for (std::thread& thread : threads)
+            thread.join();
+    }
+}
+
 TEST(Textures, SpeaksOneVersion) {
     void* library = dlopen(OVC_TEXTURES_LIBRARY, RTLD_NOW | RTLD_LOCAL);
     const auto get =
