@@ -284,10 +284,10 @@ void add_solids(const std::vector<Solid>& solids, int segments, const Box& world
 
 } // namespace
 
-void flatten(const std::vector<ObjectPtr>& objects, const Look& look, Scene& scene) {
+void flatten(const std::vector<DrawnObject>& objects, const Look& look, Scene& scene) {
     Gatherer gatherer(look, scene);
-    for (const ObjectPtr& object : objects)
-        gatherer.gather(*object, {});
+    for (const auto& [object, defaults] : objects)
+        gatherer.gather(*object, {.texture = defaults.get()});
     const std::vector<Placed>& placed = gatherer.placed;
 
     const int segments = choose_segments(gatherer, look.tolerance);
@@ -329,12 +329,13 @@ struct ObjectAlone {
     ObjectAlone(const Object& object, uint64_t max_triangles) {
         look.max_triangles = max_triangles;
         gatherer.gather_unseen = true;
-        gatherer.gather(object, {});
+        gatherer.gather(object, {.texture = &any});
     }
     ObjectAlone(const ObjectAlone&) = delete; // the gatherer refers to the other members
 
     Scene scene;
     Look look;
+    Texture any; // nobody sees it
     Gatherer gatherer{look, scene};
 };
 

@@ -18,9 +18,16 @@ struct Look {
     std::optional<dvec3> eye;              // planes reach as far as the camera can see them
 };
 
+/// An object that the scene draws, and the texture that its parts without one have: what #default
+/// says at the object's end, wherever its parts were declared.
+struct DrawnObject {
+    ObjectPtr object;
+    TexturePtr defaults;
+};
+
 /// Adds the objects to `scene`: a mesh for each material, one for each plane, and their lights.
 /// Throws ParseError for an object that cannot be cut and for too many objects or triangles.
-void flatten(const std::vector<ObjectPtr>& objects, const Look& look, Scene& scene);
+void flatten(const std::vector<DrawnObject>& objects, const Look& look, Scene& scene);
 
 /// Without a tolerance a circle has this many straight pieces, but fewer, down to 8, where the
 /// scene's round shapes would have more than kMaxRoundTriangles triangles.

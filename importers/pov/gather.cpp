@@ -168,10 +168,7 @@ void Gatherer::inherit(const Object& object, Inherited& from) {
 }
 
 Cover Gatherer::cover_of(const Object& object, const Inherited& from, bool in_solid) {
-    static const Texture kNoDefaults;
-    const Texture& texture = from.texture      ? *from.texture
-                             : object.defaults ? *object.defaults
-                                               : kNoDefaults;
+    const Texture& texture = *from.texture;
     const Pigment& pigment = texture.pigment;
     const bool on_uv = pigment.uv_mapping || from.uv_mapping;
     const Shape* const shape = std::get_if<Shape>(&object.shape);

@@ -24,7 +24,7 @@ struct Placed {
 struct Inherited {
     dmat4 placed{1};                  // to the world
     dmat4 in_solid{1};                // to the space of the solid that contains the object
-    const Texture* texture = nullptr; // null: the scene's default
+    const Texture* texture = nullptr; // at first that of #default
     dmat4 texture_placed{1};          // applied after the texture's own transformation
     PlacedInterior interior;
     const Texture* inside = nullptr; // of the inner sides, with the placing of `texture`

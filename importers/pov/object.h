@@ -78,7 +78,6 @@ struct Object {
 
     dmat4 placed{1};                       // from the object's own space to its parent's
     std::optional<Texture> texture;        // none: the parent's
-    TexturePtr defaults;                   // where the parents have none, too; null: a plain one
     std::optional<Texture> inside_texture; // of an interior_texture
     std::optional<Interior> interior;
     uint32_t depth = 1;            // levels of objects within objects, as parts, clips or bounds

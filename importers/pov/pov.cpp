@@ -121,10 +121,14 @@ public:
     }
 
 private:
+    void draw(ObjectPtr object) {
+        objects_.push_back({std::move(object), reader_.shared_defaults});
+    }
+
     void parse_statement(Scene& scene) {
         const Token token = reader_.peek();
         if (starts_object(token))
-            objects_.push_back(parse_object(reader_));
+            draw(parse_object(reader_));
         else if (reader_.take("camera"))
             camera_ = parse_camera(reader_);
         else if (reader_.take("background"))
@@ -147,7 +151,7 @@ private:
             reader_.omit(token.name->text, token.place, token.name->text + " is left out");
             skip_braces(reader_, token.name->text);
         } else if (auto object = take_named_if<ObjectPtr>(reader_))
-            objects_.push_back(std::move(*object));
+            draw(std::move(*object));
         else if (const auto camera = take_named_if<CameraValue>(reader_))
             camera_ = *camera;
         else if (!reader_.take(';')) {
@@ -240,7 +244,7 @@ private:
     std::vector<Media> air_; // of the whole scene
     bool gamma_given_ = false;
     uint32_t trace_level_ = 5;
-    std::vector<ObjectPtr> objects_;
+    std::vector<DrawnObject> objects_;
     std::optional<CameraValue> camera_;
 };
 

@@ -585,15 +585,19 @@ TEST(PovScene, AreaLightsAreGrids) {
     EXPECT_EQ(facing->lights.at(0).area_points, 4u);
 }
 
-TEST(PovScene, DefaultsAreOfObjectsThatFollow) {
+TEST(PovScene, DefaultsAreOfObjectsThatEndBehindThem) {
     const Result<Scene> scene =
         parse("#default { pigment { rgb y } } sphere { 0, 1 } "
-              "#declare D = mesh { triangle { 0, x, y } } "
-              "#default { pigment { rgb x } } sphere { 9, 1 } object { D }");
+              "#declare Mesh = mesh { triangle { 0, x, y } } #declare Ball = sphere { 0, 1 } "
+              "#declare Bright = sphere { 0, 1 finish { ambient 1 } } "
+              "#default { pigment { rgb x } } object { Mesh } union { object { Ball } } "
+              "object { Bright } union { sphere { 9, 1 } #default { pigment { rgb z } } }");
     ASSERT_TRUE(scene);
-    ASSERT_EQ(scene->materials.size(), 2u);
-    EXPECT_EQ(scene->materials[0].color, vec3(0, 1, 0)) << "also of the mesh";
-    EXPECT_EQ(scene->materials[1].color, vec3(1, 0, 0));
+    ASSERT_EQ(scene->materials.size(), 4u);
+    EXPECT_EQ(scene->materials[0].color, vec3(0, 1, 0));
+    EXPECT_EQ(scene->materials[1].color, vec3(1, 0, 0)) << "those that were declared before";
+    EXPECT_EQ(scene->materials[2].color, vec3(0, 1, 0)) << "the rest of a texture, as it was read";
+    EXPECT_EQ(scene->materials[3].color, vec3(0, 0, 1));
 }
 
 /// Many lights are drawn by fewer, which lie as far from the middle as those do on average.

@@ -41,7 +41,6 @@ public:
             auto child = std::make_shared<Object>();
             child->kind = object.kind;
             child->place = object.place;
-            child->defaults = object.defaults;
             child->texture = std::move(group.texture);
             Shape shape;
             shape.fixed = double(group.facets.corners.size() / 3);

@@ -243,7 +243,6 @@ ObjectPtr parse_object(Reader& reader) {
     object->kind = keyword.name->text; // the reader owns the text
     object->place = keyword.place;
     object->caller = reader.caller();
-    object->defaults = reader.shared_defaults;
     reader.expect('{', object->kind);
     // A shape, a mesh, a light or an object { } may start as a copy of a declared object.
     const bool is_group = kWholes.contains(object->kind) && object->kind != "object" &&

@@ -151,7 +151,7 @@ public:
     Moment moment;
     bool moves = false;             // the scene has asked for the moment
     Texture defaults;               // of #default
-    TexturePtr shared_defaults;     // the same, for the objects that are read from here on
+    TexturePtr shared_defaults;     // the same, for the objects that are drawn from here on
     std::optional<NoiseKind> noise; // noise_generator of global_settings
     int wave_sources = 10;          // number_of_waves of global_settings
     /// The objects that the scene asked about with trace().
