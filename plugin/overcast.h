@@ -415,7 +415,7 @@ typedef struct ovc_statistics {
     /* + inside intersect and occluded */
     double seconds_trace;
     /* + of `seconds_pass`, the kernel alone, by the device's clock; with a software renderer the
-     * CPU time of the thread that worked longest; all of it where a structure cannot tell */
+     * CPU time of its threads, shared out among them; all of it where a structure cannot tell */
     double seconds_kernel;
     /* of level 1 and level 2 in host memory */
     uint64_t host_bytes;
