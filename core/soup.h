@@ -13,6 +13,7 @@
 #include <cassert>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -103,8 +104,7 @@ public:
         const vec3* c = corners_.data() + size_t(prim) * 3;
         return {origin_ + dvec3(c[0]), origin_ + dvec3(c[1]), origin_ + dvec3(c[2])};
     }
-    /// Writes the coordinates of triangle(), corner by corner and kStride apart. Doubles beyond the
-    /// range of corners (in_range()) may be left as they are.
+    /// Writes the coordinates of triangle(), corner by corner and kStride apart.
     template <size_t kStride>
     void put_triangle(uint32_t prim, double* to) const {
         assert(prim < size());
@@ -112,7 +112,7 @@ public:
         if (plain_)
             put_corners<kStride>(corners_.data() + at, origin_, to);
         else if (!transform_ && !double_corners_.empty())
-            put_corners<kStride>(double_corners_.data() + at, origin_, to);
+            put_corners<kStride>(double_corners_.data() + at, origin_, to, in_range);
         else
             put_corners<kStride>(placed_triangle(prim).data(), dvec3(0), to);
     }
@@ -132,13 +132,14 @@ private:
     bool has_whole_triangles() const;
     Triangle placed_triangle(uint32_t prim) const;
     Triangle offsets(uint32_t prim) const;
-    template <size_t kStride, class Vec>
-    static void put_corners(const Vec* corners, const dvec3& origin, double* to) {
+    template <size_t kStride, class Vec, class Finish = std::identity>
+    static void put_corners(const Vec* corners, const dvec3& origin, double* to,
+                            Finish finish = {}) {
         const double x = origin.x, y = origin.y, z = origin.z;
         for (size_t i = 0; i < 3; ++i) {
-            to[3 * i * kStride] = x + double(corners[i].x);
-            to[(3 * i + 1) * kStride] = y + double(corners[i].y);
-            to[(3 * i + 2) * kStride] = z + double(corners[i].z);
+            to[3 * i * kStride] = finish(x + double(corners[i].x));
+            to[(3 * i + 1) * kStride] = finish(y + double(corners[i].y));
+            to[(3 * i + 2) * kStride] = finish(z + double(corners[i].z));
         }
     }
 

@@ -47,6 +47,21 @@ private:
     std::span<const Corner> corners_;
 };
 
+TEST(Chunk, PutsTheCoordinatesOfTriangles) {
+    const std::vector<dvec3> doubles = {{1e-90, 1e90, 1}, {-1e90, 2, -1e-90}, {0.1, 0.2, 0.3}};
+    const std::vector<vec3> floats = {{1, 2, 3}, {1e-30f, 1e30f, 5}, {0, -1, 0.1f}};
+    for (const dvec3& origin : {dvec3(0), dvec3(0.1, 3, 1e-80)})
+        for (const bool are_floats : {false, true}) {
+            const Chunk chunk = are_floats ? Chunk::borrowing(origin, floats)
+                                           : Chunk::borrowing_doubles(origin, doubles);
+            const Triangle triangle = chunk.triangle(0);
+            std::array<double, 18> put{};
+            chunk.put_triangle<2>(0, put.data());
+            for (int i = 0; i < 9; ++i)
+                EXPECT_EQ(put[size_t(2 * i)], triangle[size_t(i / 3)][i % 3]) << i;
+        }
+}
+
 TEST(Chunk, StoredCornersLieWhereThoseInMemoryDo) {
     std::mt19937 random(3);
     const auto coordinate = [&] { return double(random()) * 0x1p-30 - 2; };

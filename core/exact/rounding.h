@@ -69,10 +69,57 @@ struct MeetingVectors {
     }
 };
 
+/// A product, or a sum of some, that is yet to become a DoubleDouble: hi + lo, where lo may be a
+/// few v |hi|, or of the terms. That saves a third of the additions (docs/design/numerics.md).
+template <class V>
+struct TermsOf {
+    V hi, lo;
+
+    OVC_INLINE TermsOf operator+(const TermsOf& other) const {
+        const DoubleDoubleOf<V> sum = two_sum(hi, other.hi);
+        return {sum.hi, sum.lo + (lo + other.lo)};
+    }
+    OVC_INLINE TermsOf operator-(const TermsOf& other) const {
+        return *this + TermsOf{-other.hi, -other.lo};
+    }
+    OVC_INLINE DoubleDoubleOf<V> total() const { return fast_two_sum(hi, lo); }
+};
+
+template <class V>
+OVC_INLINE TermsOf<V> term(const DoubleDoubleOf<V>& a, V b) {
+    const DoubleDoubleOf<V> product = two_product(a.hi, b);
+    return {product.hi, product.lo + a.lo * b};
+}
+template <class V>
+OVC_INLINE TermsOf<V> term(const DoubleDoubleOf<V>& a, const DoubleDoubleOf<V>& b) {
+    const DoubleDoubleOf<V> product = two_product(a.hi, b.hi);
+    return {product.hi, product.lo + (a.hi * b.lo + a.lo * b.hi)};
+}
+
+template <class V, class B>
+OVC_INLINE Vec3Of<DoubleDoubleOf<V>> cross_of_terms(const Vec3Of<DoubleDoubleOf<V>>& a,
+                                                    const Vec3Of<B>& b) {
+    return {(term(a.y, b.z) - term(a.z, b.y)).total(), (term(a.z, b.x) - term(a.x, b.z)).total(),
+            (term(a.x, b.y) - term(a.y, b.x)).total()};
+}
+template <class V, class B>
+OVC_INLINE DoubleDoubleOf<V> dot_of_terms(const Vec3Of<DoubleDoubleOf<V>>& a, const Vec3Of<B>& b) {
+    return (term(a.x, b.x) + term(a.y, b.y) + term(a.z, b.z)).total();
+}
+
+/// solve() of core/exact/solution.h, off by at most 48 v^2 of the sums of the magnitudes.
+template <class V>
+OVC_INLINE Solution<DoubleDoubleOf<V>> solve_in_terms(const MeetingVectors<V>& m) {
+    const auto p = cross_of_terms(m.ac, m.dir);
+    const auto q = cross_of_terms(m.from_a, m.ab);
+    return {-dot_of_terms(m.ab, p), -dot_of_terms(m.from_a, p), dot_of_terms(q, m.dir),
+            dot_of_terms(q, m.ac)};
+}
+
 template <class V>
 OVC_INLINE BoundedSolution<V> bounded_solution(const MeetingVectors<V>& m) {
-    constexpr double kBound = 0x1p-101; // 32 v^2
-    return {solve(m.ab, m.ac, m.from_a, m.dir),
+    constexpr double kBound = 0x1p-100; // 64 v^2
+    return {solve_in_terms(m),
             {kBound * m.size.det + m.lost, kBound * m.size.u + m.lost, kBound * m.size.v + m.lost,
              kBound * m.size.t + m.lost}};
 }

@@ -31,8 +31,7 @@ struct MeetingLanes {
     const Ray& ray(int lane) const { return *rays[lane]; }
     Triangle triangle(int lane) const {
         const auto corner = [&](int i) {
-            return dvec3(in_range(corners[3 * i][lane]), in_range(corners[3 * i + 1][lane]),
-                         in_range(corners[3 * i + 2][lane]));
+            return dvec3(corners[3 * i][lane], corners[3 * i + 1][lane], corners[3 * i + 2][lane]);
         };
         return {corner(0), corner(1), corner(2)};
     }

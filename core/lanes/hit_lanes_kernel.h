@@ -8,21 +8,11 @@
 #include "core/lanes/hit_lanes.h"
 #include "core/lanes/lanes_kernel.h"
 
-#include <limits>
-
 namespace ovc {
 
 template <class V>
 inline constexpr int kLanesOf = int(sizeof(V) / sizeof(double));
 
-/// Does what in_range() of core/soup.h does.
-template <class V>
-OVC_INLINE V in_range(V x) {
-    const V size = magnitude(x);
-    const V not_tiny = size < all_lanes<V>(0x1p-256) ? V{} : x;
-    return size > all_lanes<V>(0x1p256) ? all_lanes<V>(std::numeric_limits<double>::infinity())
-                                        : not_tiny;
-}
 /// Returns the vectors of some of the first `count` lanes. Those behind have the last one's ray.
 template <class V>
 OVC_INLINE MeetingVectors<V> vectors_of(const MeetingLanes& lanes, int lane, int count) {
@@ -33,7 +23,7 @@ OVC_INLINE MeetingVectors<V> vectors_of(const MeetingLanes& lanes, int lane, int
     load_rays(rays, ray);
     const auto corner = [&](int i) __attribute__((always_inline)) {
         const auto axis = [&](int k) __attribute__((always_inline)) {
-            return in_range(load<V>(lanes.corners[3 * i + k] + lane));
+            return load<V>(lanes.corners[3 * i + k] + lane);
         };
         return Vec3Of<V>{axis(0), axis(1), axis(2)};
     };
