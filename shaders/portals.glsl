@@ -44,12 +44,14 @@ LocalRay scene_ray(int ray) { return local_ray(world_ray(ray), portal_at(0)); }
 #endif
 
 // Takes a ray that has come to a portal behind it. Returns false if there is no portal, or if the
-// ray goes no farther.
-bool enter_portal(int ray, inout Descent d, inout Packet packet, inout Found found) {
+// ray goes no farther. rounds: those of the loop over far triangles are added.
+bool enter_portal(int ray, inout Descent d, inout Packet packet, inout Found found,
+                  inout int rounds) {
     if (d.unit >= 0 || d.lost || found.best_hi < 0.0)
         return false;
     Portal portal = portal_at(-d.unit);
 #if OVC_FAR_TRIANGLES
+    rounds += portal.far.y;
     if (portal.far.y > 0) {
         take_far_triangles(world_ray(ray), portal, packet, found);
         d.unit = 0;

@@ -135,6 +135,16 @@ bool give_answers(int first, Packet packet, Found found[OVC_PACKET], bool ended,
     return named;
 }
 
+#if OVC_CLAIMS && OVC_PORTALS
+// Returns the largest of the numbers, below 2^bits, of all lanes that have come here.
+int largest_of_lanes(int number, int bits) {
+    int largest = 0;
+    for (int bit = bits - 1; bit >= 0; --bit)
+        largest |= ballotARB(number >= (largest | 1 << bit)) != 0ul ? 1 << bit : 0;
+    return largest;
+}
+#endif
+
 // Traces on for at least one round, until all rays have their answers or `rounds` reaches
 // max_rounds. Returns whether they have.
 bool trace_on(int first, inout Descent d, inout Packet packet, inout Found found[OVC_PACKET],
@@ -145,7 +155,11 @@ bool trace_on(int first, inout Descent d, inout Packet packet, inout Found found
         end_behind_candidates(found[k], packet.any_hit[k]);
 #endif
 #if OVC_PORTALS
-    ended = ended && !enter_portal(first, d, packet, found[0]);
+    if (ended)
+        ended = !enter_portal(first, d, packet, found[0], rounds);
+#if OVC_FAR_TRIANGLES
+    ++rounds; // llvmpipe goes through a loop once where no lane has a far triangle
+#endif
 #endif
     return ended;
 }
@@ -176,6 +190,10 @@ int trace_once(int ray, int max_rounds) {
     bool whole, ended;
     do {
         whole = trace_on(ray, d, packet, found, look, rounds);
+#if OVC_CLAIMS && OVC_PORTALS
+        // Lanes wait for each other at every portal, and llvmpipe counts rounds until the last.
+        rounds = largest_of_lanes(rounds, 17);
+#endif
         ended = whole || (rounds >= look && are_hopeless(found));
         look = rounds >= look ? min(look + OVC_PATIENCE, max_rounds) : look;
     } while (!ended && rounds < max_rounds);
@@ -208,7 +226,11 @@ int trace_with_refill(int begin, int end, int max_rounds) {
         bool enough = rounds >= max_rounds;
         int own = 0;
         bool whole = trace_on(ray, d, packet, found, enough ? 1 : OVC_REFILL_ROUNDS, own);
+#if OVC_PORTALS
+        rounds += largest_of_lanes(own, 5) + 1;
+#else
         rounds += OVC_REFILL_ROUNDS + 1;
+#endif
         ++looks;
         bool ended = whole || (looks > OVC_PATIENCE / OVC_REFILL_ROUNDS && are_hopeless(found));
         bool ready = ended || enough;
