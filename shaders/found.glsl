@@ -85,16 +85,27 @@ vec2 barycentric(Found found) {
 }
 
 #if OVC_PORTALS
-// Returns the same in another frame, rounded outwards. t_end: the ray's end there. The end of a ray
-// behind its candidates is rounded inwards, for nobody has looked behind it in the frame before.
+// Returns the end of a ray behind its candidates in another frame. It is rounded inwards, for nobody
+// has looked behind it in the frame before; but not to before the part, where in a frame as large
+// as the scene a rounding may be longer than the ray: then the part would be passed over, and
+// nobody would know that it may hold a nearer hit. At its very beginning the end is before the
+// candidates, which the answer tells.
+float end_in_times(float end, Times from, Times to) {
+    float inwards = earlier(end, from, to);
+    return later(end, from, to) >= 0.0 ? greater(inwards, 0.0) : inwards;
+}
+
+// Returns the same in another frame, rounded outwards. t_end: the ray's end there.
 Found in_times(Found found, Times from, Times to, float t_end) {
     bool hit = has_hit(found);
     Found there = found;
     there.best_lo = hit && found.best_lo < OVC_NEVER ? earlier(found.best_lo, from, to) : OVC_NEVER;
     there.best_hi = hit ? later(found.best_hi, from, to) : t_end;
     if (found.prim == OVC_ENDED)
-        there.best_hi = earlier(found.best_hi, from, to);
-    bool counts = found.count > 0 && !(hit && found.further_lo > found.best_hi);
+        there.best_hi = end_in_times(found.best_hi, from, to);
+    // The end of a ray behind its candidates may be rounded to before them, and they count still.
+    bool is_behind = hit && found.prim != OVC_ENDED && found.further_lo > found.best_hi;
+    bool counts = found.count > 0 && !is_behind;
     there.count = counts ? found.count : 0;
     there.further_lo = counts ? earlier(found.further_lo, from, to) : OVC_NEVER;
     there.further_hi = counts ? later(found.further_hi, from, to) : -OVC_NEVER;
@@ -125,12 +136,14 @@ float first_t(Found found) { return lesser(found.best_lo, found.further_lo); }
 // Ends a ray with two further candidates behind them, because most such rays pass a side that both
 // share, or a corner, and hit one of the triangles there. Doubles trace the others on. The end is
 // farther behind the candidates than they are deep, so that it lies behind the others at a corner.
+// It does not lie before the part where the ray is now: below 0 the ray would be done, and parts
+// that it has not come to yet may reach to before its candidates.
 void end_behind_candidates(inout Found found, bool any_hit) {
     float end = lesser(found.best_lo, found.best_hi);
     bool ends = OVC_CERTIFY != 0 && !any_hit && found.count > 1 && found.further_hi < end;
     float behind = found.further_hi + 3.0 * (found.further_hi - found.further_lo);
     found.best_lo = ends ? OVC_NEVER : found.best_lo;
-    found.best_hi = ends ? lesser(behind, end) : found.best_hi;
+    found.best_hi = ends ? greater(lesser(behind, end), 0.0) : found.best_hi;
     found.prim = ends ? OVC_ENDED : found.prim;
 }
 
