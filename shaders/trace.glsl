@@ -114,8 +114,9 @@ bool give_answers(int first, Packet packet, Found found[OVC_PACKET], bool ended,
             answer.y = floatBitsToUint(tells ? begin_of(found[k], packet.place) : OVC_ANYWHERE);
         }
 #if OVC_NAMES > 2
-        bool listed = ended && answer.w != OVC_FLAGGED && answer.x != OVC_NO_TRIANGLE &&
-                      are_listed(found[k]);
+        // The two that the words of the answer would name may both be the certain hit itself.
+        bool decided = packet.any_hit[k] && found[k].prim != OVC_MISS;
+        bool listed = ended && !decided && answer.w != OVC_FLAGGED && are_listed(found[k]);
         counts[k] = listed ? found[k].count : 0;
         answer.x = listed ? OVC_LISTED : answer.x;
         answer.y = listed ? uint((first + k) << OVC_LIST_BITS | counts[k]) : answer.y;

@@ -122,5 +122,53 @@ TEST_P(FarTrianglesGl, AreLeftToPagesWhereTheyAreManyOrPlaced) {
     test::expect_answers(*structure, rays, test::brute_force(soup, rays));
 }
 
+/// Returns flat boxes of all sizes, which stand through each other: parts that overlap, in frames
+/// of their own.
+Chunk flat_boxes(test::Random& random, int count) {
+    std::vector<dvec3> corners;
+    for (int i = 0; i < count; ++i) {
+        dvec3 half(std::exp(random(0, 6)), std::exp(random(-3, 0)), std::exp(random(0, 6)));
+        std::swap(half.y, half[int(random.below(3))]);
+        const dvec3 middle = random.point(-50, 50);
+        for (int axis = 0; axis < 3; ++axis)
+            for (const int side : {-1, 1}) {
+                const auto at = [&](int a, int b) {
+                    dvec3 corner;
+                    corner[axis] = side;
+                    corner[(axis + 1) % 3] = a;
+                    corner[(axis + 2) % 3] = b;
+                    return middle + half * corner;
+                };
+                corners.insert(corners.end(),
+                               {at(-1, -1), at(1, -1), at(1, 1), at(-1, -1), at(1, 1), at(-1, 1)});
+            }
+    }
+    return Chunk::owning_doubles(dvec3(0), std::move(corners));
+}
+
+TEST_P(FarTrianglesGl, AnswerRaysThatMeetOverlappingParts) {
+    const auto [reach, compute] = GetParam();
+    for (uint64_t seed = 0; seed < 20; ++seed) {
+        SCOPED_TRACE(seed);
+        test::Random random(seed);
+        Soup soup;
+        soup.chunks.push_back(flat_boxes(random, 40 + 10 * int(seed % 8)));
+        soup.chunks.push_back(Floor(random, reach).chunk(1));
+        std::vector<Ray> rays;
+        for (int i = 0; i < 4000; ++i) {
+            Ray ray{.org = random.point(-100, 100)};
+            const Triangle aim =
+                soup.chunks[0].triangle(uint32_t(random.below(soup.chunks[0].size())));
+            ray.dir =
+                glm::mix(glm::mix(aim[0], aim[1], random(0, 1)), aim[2], random(0, 1)) - ray.org;
+            rays.push_back(ray);
+        }
+        const auto structure =
+            build(soup, {.leaf_triangles = uint32_t(40 + 40 * (seed % 5)), .compute = compute});
+        ASSERT_TRUE(structure);
+        test::expect_answers(*structure, rays, test::brute_force(soup, rays));
+    }
+}
+
 } // namespace
 } // namespace ovc
