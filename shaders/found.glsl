@@ -85,11 +85,10 @@ vec2 barycentric(Found found) {
 }
 
 #if OVC_PORTALS
-// Returns the end of a ray behind its candidates in another frame. It is rounded inwards, for nobody
-// has looked behind it in the frame before; but not to before the part, where in a frame as large
-// as the scene a rounding may be longer than the ray: then the part would be passed over, and
-// nobody would know that it may hold a nearer hit. At its very beginning the end is before the
-// candidates, which the answer tells.
+// Returns the end of a ray behind its candidates in another frame. It is rounded inwards, for
+// nobody has looked behind it in the frame before; but not to before a part that begins before the
+// end: in a frame as large as the scene a rounding may be longer than the ray, and the part would
+// be passed over. At the part's beginning the end is before the candidates, and the answer says so.
 float end_in_times(float end, Times from, Times to) {
     float inwards = earlier(end, from, to);
     return later(end, from, to) >= 0.0 ? greater(inwards, 0.0) : inwards;

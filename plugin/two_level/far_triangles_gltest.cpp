@@ -127,7 +127,7 @@ TEST_P(FarTrianglesGl, AreLeftToPagesWhereTheyAreManyOrPlaced) {
 Chunk flat_boxes(test::Random& random, int count) {
     std::vector<dvec3> corners;
     for (int i = 0; i < count; ++i) {
-        dvec3 half(std::exp(random(0, 6)), std::exp(random(-3, 0)), std::exp(random(0, 6)));
+        dvec3 half{std::exp(random(0, 6)), std::exp(random(-3, 0)), std::exp(random(0, 6))};
         std::swap(half.y, half[int(random.below(3))]);
         const dvec3 middle = random.point(-50, 50);
         for (int axis = 0; axis < 3; ++axis)
