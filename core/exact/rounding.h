@@ -70,7 +70,7 @@ struct MeetingVectors {
 };
 
 /// A product, or a sum of some, that is yet to become a DoubleDouble: hi + lo, where lo may be a
-/// few v |hi|, or of the terms. That saves a third of the additions (docs/design/numerics.md).
+/// few v |hi|, or of the terms. That saves a fifth of the additions (docs/design/numerics.md).
 template <class V>
 struct TermsOf {
     V hi, lo;
