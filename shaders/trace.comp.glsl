@@ -119,7 +119,8 @@ int trace_share(int begin, int end, int max_rounds) {
     int rounds = 0;
     for (int first = begin; first < end; first += int(gl_SubGroupSizeARB) * OVC_PACKET) {
         int ray = first + int(gl_SubGroupInvocationARB) * OVC_PACKET;
-        rounds += most_of(trace_once(ray, max_rounds - rounds));
+        // Lanes wait for each other at every portal, and llvmpipe counts until the last has come.
+        rounds += (OVC_PORTALS != 0 ? 2 : 1) * most_of(trace_once(ray, max_rounds - rounds));
     }
     return rounds;
 #endif

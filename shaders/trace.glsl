@@ -136,7 +136,7 @@ bool give_answers(int first, Packet packet, Found found[OVC_PACKET], bool ended,
     return named;
 }
 
-#if OVC_CLAIMS && OVC_PORTALS
+#if OVC_REFILL && OVC_PORTALS
 // Returns the largest of the numbers, below 2^bits, of all lanes that have come here.
 int largest_of_lanes(int number, int bits) {
     int largest = 0;
@@ -191,10 +191,6 @@ int trace_once(int ray, int max_rounds) {
     bool whole, ended;
     do {
         whole = trace_on(ray, d, packet, found, look, rounds);
-#if OVC_CLAIMS && OVC_PORTALS
-        // Lanes wait for each other at every portal, and llvmpipe counts rounds until the last.
-        rounds = largest_of_lanes(rounds, 17);
-#endif
         ended = whole || (rounds >= look && are_hopeless(found));
         look = rounds >= look ? min(look + OVC_PATIENCE, max_rounds) : look;
     } while (!ended && rounds < max_rounds);
