@@ -120,10 +120,8 @@ private:
     std::map<std::array<int, 3>, Texture> known_;
 };
 
-/// Reads the textures of a triangle's corners, `{ NAME NAME NAME }`.
-std::vector<Texture> parse_corner_textures(Reader& reader) {
-    const Place at = reader.peek().place;
-    reader.expect('{', "texture_list");
+/// Reads textures up to the } of their list. of: what it is a list of, for messages.
+std::vector<Texture> parse_textures_of(Reader& reader, const char* of) {
     std::vector<Texture> textures;
     while (!reader.take('}'))
         if (reader.take("texture"))
@@ -131,7 +129,15 @@ std::vector<Texture> parse_corner_textures(Reader& reader) {
         else if (const auto texture = take_named_if<Texture>(reader))
             textures.push_back(*texture);
         else if (!reader.take(','))
-            reader.fail_here("'}' or a texture of a triangle's corner");
+            reader.fail_here(fmt::format("'}}' or a texture of {}", of));
+    return textures;
+}
+
+/// Reads the textures of a triangle's corners, `{ NAME NAME NAME }`.
+std::vector<Texture> parse_corner_textures(Reader& reader) {
+    const Place at = reader.peek().place;
+    reader.expect('{', "texture_list");
+    std::vector<Texture> textures = parse_textures_of(reader, "a triangle's corner");
     if (textures.size() != 3)
         reader.fail(at, fmt::format("found {} textures of a triangle's corners, expected 3",
                                     textures.size()));
@@ -226,16 +232,7 @@ std::vector<Face> parse_faces(Reader& reader, bool textures) {
 std::vector<Texture> parse_textures(Reader& reader) {
     reader.expect('{', "texture_list");
     parse_count(reader, 0);
-    std::vector<Texture> textures;
-    while (!reader.take('}')) {
-        if (reader.take("texture"))
-            textures.push_back(parse_texture(reader));
-        else if (const auto texture = take_named_if<Texture>(reader))
-            textures.push_back(*texture);
-        else if (!reader.take(','))
-            reader.fail_here("'}' or a texture of the list");
-    }
-    return textures;
+    return parse_textures_of(reader, "the list");
 }
 
 struct Mesh2 {
