@@ -72,6 +72,7 @@
 //         texel 9: the number of the triangle, 0, 0, 0
 #define OVC_PORTAL_TEXELS 10
 #define OVC_FAR_TRIANGLE_TEXELS 10
+#define OVC_MAX_FAR_TRIANGLES 16 // behind a portal
 
 // A ray is two RGBA32UI texels, in the frame that pages share: org xyz, t_end (float bits); dir xyz
 // (float bits), the number of the triangle that it does not see or OVC_SKIPS_NONE, with

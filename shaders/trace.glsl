@@ -224,6 +224,7 @@ int trace_with_refill(int begin, int end, int max_rounds) {
         int own = 0;
         bool whole = trace_on(ray, d, packet, found, enough ? 1 : OVC_REFILL_ROUNDS, own);
 #if OVC_PORTALS
+        // At most OVC_REFILL_ROUNDS, OVC_MAX_FAR_TRIANGLES and one: below 2^5.
         rounds += largest_of_lanes(own, 5) + 1;
 #else
         rounds += OVC_REFILL_ROUNDS + 1;

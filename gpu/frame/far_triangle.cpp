@@ -3,6 +3,8 @@
 // at its corners.
 #include "gpu/frame/far_triangle.h"
 
+#include "shaders/layout.h"
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -11,7 +13,7 @@ namespace ovc {
 namespace {
 
 /// The kernel tests one after the other; above this a tree of float32 boxes is faster.
-constexpr size_t kMaxTriangles = 16;
+constexpr size_t kMaxTriangles = OVC_MAX_FAR_TRIANGLES;
 /// A leaf reaches far if it is at least this part of the scene.
 constexpr double kMinReach = 1.0 / 4;
 /// More than the roundings of a corner's coordinates and of their product with a vector.
