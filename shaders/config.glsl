@@ -20,9 +20,6 @@
 #ifndef OVC_FLOAT_PAIRS
 #define OVC_FLOAT_PAIRS 0
 #endif
-#ifndef OVC_FAR_TRIANGLES
-#define OVC_FAR_TRIANGLES 0 // 1: some portals lead to far triangles
-#endif
 #ifndef OVC_MAY_WAIT
 #define OVC_MAY_WAIT 0 // 1: a ray waits if a link leads to a page that is not in the pool
 #endif

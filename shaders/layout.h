@@ -62,17 +62,8 @@
 // portal  texels 0 to 5: 12 doubles, the point of the world that lies at 0 in the frame, and the
 //         rows of the matrix from the world to the frame
 //         texels 6 to 8: 6 doubles, the box of what lies behind it, in the frame
-//         texel 9: the unit of the tree's header, the number of the first triangle; the texel and
-//                  the number of its far triangles, 0 where rays go through the tree
-// far     behind all portals: a triangle in the frame of its part, in doubles, which the kernel
-// tri-    tests there (shaders/far.glsl)
-// angle   texels 0 to 8: 18 doubles, the normal; the least and the greatest product of a corner
-//                        with it; for each corner a vector and a number, so that the product with
-//                        the vector, less the number, is the corner's weight; the error of weights
-//         texel 9: the number of the triangle, 0, 0, 0
+//         texel 9: the unit of the tree's header, the number of the first triangle, 0, 0
 #define OVC_PORTAL_TEXELS 10
-#define OVC_FAR_TRIANGLE_TEXELS 10
-#define OVC_MAX_FAR_TRIANGLES 16 // behind a portal
 
 // A ray is two RGBA32UI texels, in the frame that pages share: org xyz, t_end (float bits); dir xyz
 // (float bits), the number of the triangle that it does not see or OVC_SKIPS_NONE, with

@@ -39,26 +39,12 @@ void set_local_ray(inout Packet packet, LocalRay local, Tree tree) {
 // Returns the ray in the frame of the top-level tree, whose portal is the first.
 LocalRay scene_ray(int ray) { return local_ray(world_ray(ray), portal_at(0)); }
 
-#if OVC_FAR_TRIANGLES
-#include "far.glsl"
-#endif
-
 // Takes a ray that has come to a portal behind it. Returns false if there is no portal, or if the
-// ray goes no farther. rounds: those of the loop over far triangles are added.
-bool enter_portal(int ray, inout Descent d, inout Packet packet, inout Found found,
-                  inout int rounds) {
+// ray goes no farther.
+bool enter_portal(int ray, inout Descent d, inout Packet packet, inout Found found) {
     if (d.unit >= 0 || d.lost || found.best_hi < 0.0)
         return false;
     Portal portal = portal_at(-d.unit);
-#if OVC_FAR_TRIANGLES
-    rounds += portal.far.y;
-    if (portal.far.y > 0) {
-        take_far_triangles(world_ray(ray), portal, packet, found);
-        d.unit = 0;
-        d.done = found.best_hi < 0.0;
-        return !d.done;
-    }
-#endif
     LocalRay local = local_ray(world_ray(ray), portal);
     Found there = in_times(found, packet.place.part, local.times, local.t_end);
     bool decidable = local.decidable && there.best_hi != OVC_UNDECIDABLE;

@@ -26,7 +26,6 @@ struct Portal {
     dvec3 hi;
     int tree; // the unit of its header
     uint first_number;
-    ivec2 far; // the texel and the number of its far triangles
 };
 
 Portal portal_at(int number) {
@@ -36,7 +35,7 @@ Portal portal_at(int number) {
         d[i] = doubles_of(portal_texel(texel + i));
     uvec4 last = portal_texel(texel + 9);
     return Portal(dvec3(d[0], d[1].x), dvec3[3](dvec3(d[1].y, d[2]), dvec3(d[3], d[4].x), dvec3(d[4].y, d[5])),
-                  dvec3(d[6], d[7].x), dvec3(d[7].y, d[8]), int(last.x), last.y, ivec2(last.zw));
+                  dvec3(d[6], d[7].x), dvec3(d[7].y, d[8]), int(last.x), last.y);
 }
 
 dvec3 times(dvec3 rows[3], dvec3 v) {

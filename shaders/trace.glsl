@@ -136,16 +136,6 @@ bool give_answers(int first, Packet packet, Found found[OVC_PACKET], bool ended,
     return named;
 }
 
-#if OVC_REFILL && OVC_PORTALS
-// Returns the largest of the numbers, below 2^bits, of all lanes that have come here.
-int largest_of_lanes(int number, int bits) {
-    int largest = 0;
-    for (int bit = bits - 1; bit >= 0; --bit)
-        largest |= ballotARB(number >= (largest | 1 << bit)) != 0ul ? 1 << bit : 0;
-    return largest;
-}
-#endif
-
 // Traces on for at least one round, until all rays have their answers or `rounds` reaches
 // max_rounds. Returns whether they have.
 bool trace_on(int first, inout Descent d, inout Packet packet, inout Found found[OVC_PACKET],
@@ -157,10 +147,7 @@ bool trace_on(int first, inout Descent d, inout Packet packet, inout Found found
 #endif
 #if OVC_PORTALS
     if (ended)
-        ended = !enter_portal(first, d, packet, found[0], rounds);
-#if OVC_FAR_TRIANGLES
-    ++rounds; // llvmpipe goes through a loop once where no lane has a far triangle
-#endif
+        ended = !enter_portal(first, d, packet, found[0]);
 #endif
     return ended;
 }
@@ -221,14 +208,9 @@ int trace_with_refill(int begin, int end, int max_rounds) {
     d.done = !take_rays(ray, tree, packet, found);
     while (ray < end) {
         bool enough = rounds >= max_rounds;
-        int own = 0;
+        int own = 0; // at most OVC_REFILL_ROUNDS
         bool whole = trace_on(ray, d, packet, found, enough ? 1 : OVC_REFILL_ROUNDS, own);
-#if OVC_PORTALS
-        // At most OVC_REFILL_ROUNDS, OVC_MAX_FAR_TRIANGLES and one: below 2^5.
-        rounds += largest_of_lanes(own, 5) + 1;
-#else
         rounds += OVC_REFILL_ROUNDS + 1;
-#endif
         ++looks;
         bool ended = whole || (looks > OVC_PATIENCE / OVC_REFILL_ROUNDS && are_hopeless(found));
         bool ready = ended || enough;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The functions by lanes for any processor, and the choice of the widest vectors.
 #include "core/lanes/cull_lanes_kernel.h"
+#include "core/lanes/far_triangle_kernel.h"
 #include "core/lanes/hit_lanes_kernel.h"
 #include "core/lanes/ray_lanes_kernel.h"
 
@@ -21,6 +22,10 @@ void to_frame_avx512(const LanesFrame& frame, const RayLanes& rays, const uint32
                      LocalRows& local);
 void gather_avx2(const Ray* const* rays, RayLanes& lanes);
 void gather_avx512(const Ray* const* rays, RayLanes& lanes);
+FarMeeting meet_far_avx2(std::span<const FarTriangle> triangles, const RayLanes& rays,
+                         const uint32_t* skip);
+FarMeeting meet_far_avx512(std::span<const FarTriangle> triangles, const RayLanes& rays,
+                           const uint32_t* skip);
 
 namespace {
 
@@ -73,6 +78,10 @@ static void to_frame_anywhere(const LanesFrame& frame, const RayLanes& rays, con
 static void gather_anywhere(const Ray* const* rays, RayLanes& lanes) {
     gather_by<Two>(rays, lanes);
 }
+static FarMeeting meet_far_anywhere(std::span<const FarTriangle> triangles, const RayLanes& rays,
+                                    const uint32_t* skip) {
+    return meet_far_by<Two>(triangles, rays, skip);
+}
 
 namespace {
 
@@ -115,6 +124,9 @@ std::vector<ToFrame> ways_to_frame() {
 std::vector<Gather> ways_to_gather() {
     return OVC_WAYS(gather);
 }
+std::vector<MeetFar> ways_to_meet_far() {
+    return OVC_WAYS(meet_far);
+}
 
 void round_hits(HitLanes& lanes, int count) {
     static const RoundHits widest = ways_to_round_hits().back();
@@ -140,6 +152,11 @@ void to_frame(const LanesFrame& frame, const RayLanes& rays, const uint32_t* wor
 void gather(const Ray* const* rays, RayLanes& lanes) {
     static const Gather widest = ways_to_gather().back();
     widest(rays, lanes);
+}
+FarMeeting meet_far(std::span<const FarTriangle> triangles, const RayLanes& rays,
+                    const uint32_t* skip) {
+    static const MeetFar widest = ways_to_meet_far().back();
+    return widest(triangles, rays, skip);
 }
 
 } // namespace ovc

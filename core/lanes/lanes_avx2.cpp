@@ -2,6 +2,7 @@
 // The functions by lanes by four doubles at once. Compiled for AVX2 with FMA; see
 // hit_lanes_kernel.h.
 #include "core/lanes/cull_lanes_kernel.h"
+#include "core/lanes/far_triangle_kernel.h"
 #include "core/lanes/hit_lanes_kernel.h"
 #include "core/lanes/ray_lanes_kernel.h"
 
@@ -40,6 +41,10 @@ void to_frame_avx2(const LanesFrame& frame, const RayLanes& rays, const uint32_t
 }
 void gather_avx2(const Ray* const* rays, RayLanes& lanes) {
     gather_by<Four>(rays, lanes);
+}
+FarMeeting meet_far_avx2(std::span<const FarTriangle> triangles, const RayLanes& rays,
+                         const uint32_t* skip) {
+    return meet_far_by<Four>(triangles, rays, skip);
 }
 
 } // namespace ovc

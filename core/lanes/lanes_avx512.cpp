@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The functions by lanes by eight doubles at once. Compiled for AVX-512; see hit_lanes_kernel.h.
 #include "core/lanes/cull_lanes_kernel.h"
+#include "core/lanes/far_triangle_kernel.h"
 #include "core/lanes/hit_lanes_kernel.h"
 #include "core/lanes/ray_lanes_kernel.h"
 
@@ -39,6 +40,10 @@ void to_frame_avx512(const LanesFrame& frame, const RayLanes& rays, const uint32
 }
 void gather_avx512(const Ray* const* rays, RayLanes& lanes) {
     gather_by<Eight>(rays, lanes);
+}
+FarMeeting meet_far_avx512(std::span<const FarTriangle> triangles, const RayLanes& rays,
+                           const uint32_t* skip) {
+    return meet_far_by<Eight>(triangles, rays, skip);
 }
 
 } // namespace ovc

@@ -34,19 +34,9 @@ Portal portal_into(const Frame& frame, const Box& box, const Transform* transfor
     return portal;
 }
 
-static void append(std::vector<uvec4>& texels, std::span<const double, 18> numbers) {
-    for (size_t i = 0; i < numbers.size(); i += 2) {
-        const auto a = std::bit_cast<uint64_t>(numbers[i]);
-        const auto b = std::bit_cast<uint64_t>(numbers[i + 1]);
-        texels.emplace_back(uint32_t(a), uint32_t(a >> 32), uint32_t(b), uint32_t(b >> 32));
-    }
-}
-
-std::vector<uvec4> pack_portals(std::span<const Portal> portals,
-                                std::span<const FarTriangle> far_triangles) {
-    const auto first_far = uint32_t(portals.size() * OVC_PORTAL_TEXELS);
+std::vector<uvec4> pack_portals(std::span<const Portal> portals) {
     std::vector<uvec4> texels;
-    texels.reserve(first_far + far_triangles.size() * OVC_FAR_TRIANGLE_TEXELS);
+    texels.reserve(portals.size() * OVC_PORTAL_TEXELS);
     for (const Portal& portal : portals) {
         std::array<double, 18> numbers{};
         auto next = numbers.begin();
@@ -54,15 +44,12 @@ std::vector<uvec4> pack_portals(std::span<const Portal> portals,
                                portal.box.lo, portal.box.hi})
             for (int axis = 0; axis < 3; ++axis)
                 *next++ = v[axis];
-        append(texels, numbers);
-        assert(portal.far.first + portal.far.count <= far_triangles.size());
-        texels.emplace_back(portal.tree, portal.first_number,
-                            first_far + portal.far.first * OVC_FAR_TRIANGLE_TEXELS,
-                            portal.far.count);
-    }
-    for (const FarTriangle& triangle : far_triangles) {
-        append(texels, triangle.numbers());
-        texels.emplace_back(triangle.number, 0, 0, 0);
+        for (size_t i = 0; i < numbers.size(); i += 2) {
+            const auto a = std::bit_cast<uint64_t>(numbers[i]);
+            const auto b = std::bit_cast<uint64_t>(numbers[i + 1]);
+            texels.emplace_back(uint32_t(a), uint32_t(a >> 32), uint32_t(b), uint32_t(b >> 32));
+        }
+        texels.emplace_back(portal.tree, portal.first_number, 0, 0);
     }
     return texels;
 }

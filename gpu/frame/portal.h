@@ -5,7 +5,6 @@
 #include "core/box.h"
 #include "core/exact/triangle.h"
 #include "core/transform.h"
-#include "gpu/frame/far_triangle.h"
 #include "kdtree/partition.h"
 #include "shaders/layout.h"
 
@@ -24,7 +23,6 @@ struct Portal {
     Box bounds;                                // the same in the world
     uint32_t tree = 0;                         // the unit of the header of the part's tree
     uint32_t first_number = 0;                 // the part's triangle numbers count from here
-    FarRange far{};                            // the triangles of the part, if they are far ones
 
     dvec3 to_local_direction(const dvec3& d) const {
         return {glm::dot(rows[0], d), glm::dot(rows[1], d), glm::dot(rows[2], d)};
@@ -43,9 +41,7 @@ Portal portal_into(const Frame& frame, const Box& box, const Transform* transfor
 
 inline constexpr uint64_t kPortalBytes = OVC_PORTAL_TEXELS * sizeof(uvec4);
 
-/// The table of portals, and the far triangles that they name, as the kernel reads it
-/// (shaders/layout.h).
-std::vector<uvec4> pack_portals(std::span<const Portal> portals,
-                                std::span<const FarTriangle> far_triangles);
+/// The table of portals, as the kernel reads it (shaders/layout.h).
+std::vector<uvec4> pack_portals(std::span<const Portal> portals);
 
 } // namespace ovc

@@ -135,7 +135,6 @@ std::string ShaderConfig::defines() const {
                        "#define OVC_CERTIFY {}\n"
                        "#define OVC_PORTALS {}\n"
                        "#define OVC_FLOAT_PAIRS {}\n"
-                       "#define OVC_FAR_TRIANGLES {}\n"
                        "#define OVC_MAY_WAIT {}\n"
                        "#define OVC_TELL_ACTIVE {}\n"
                        "#define OVC_LOOSE_PAIRS {}\n"
@@ -152,10 +151,9 @@ std::string ShaderConfig::defines() const {
                        "#define OVC_GROUP_SIZE {}\n"
                        "#define OVC_MAX_ROUNDS {}\n"
                        "#define OVC_COUNTS {}\n",
-                       any_hit, certify, portals, float_pairs, far_triangles, may_wait, tell_active,
-                       loose_pairs, pool_buffers, each_buffer, buffer_bits, stack_depth,
-                       stack_registers, packet, claims, refill, branches, int(reads), group_size,
-                       max_rounds, counts);
+                       any_hit, certify, portals, float_pairs, may_wait, tell_active, loose_pairs,
+                       pool_buffers, each_buffer, buffer_bits, stack_depth, stack_registers, packet,
+                       claims, refill, branches, int(reads), group_size, max_rounds, counts);
 }
 
 /// Does everything that asks nothing of the driver that it would have to wait for.

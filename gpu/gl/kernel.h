@@ -25,8 +25,7 @@ struct ShaderConfig {
     bool any_hit = false;
     bool certify = true;
     bool portals = false;
-    bool float_pairs = false;   // portals compute rays in pairs of floats
-    bool far_triangles = false; // behind portals; not with float_pairs
+    bool float_pairs = false; // portals compute rays in pairs of floats
     bool may_wait = false;
     bool tell_active = false;
     bool loose_pairs = false;

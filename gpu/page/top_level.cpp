@@ -146,8 +146,14 @@ Page tree_over(std::span<const Portal> portals, const Leaf& scene) {
     return Packer(nodes, grid.header(), grid, put, nullptr).pack();
 }
 
+/// Says that pages before this one have no links, as far as none were added.
+void skip_to_page(TopLevel& top, size_t page) {
+    top.first_link.resize(page + 1, uint32_t(top.links.size()));
+}
+
 /// Appends the tree of the part whose pages begin with `first_page`; returns where it begins.
 uint32_t append(TopLevel& top, const TopLevel& part, uint32_t first_page) {
+    skip_to_page(top, first_page);
     const auto begin = uint32_t(top.tree.units());
     top.tree.texels.resize(top.tree.texels.size() + part.tree.texels.size());
     const auto to = std::span(top.tree.texels).last(part.tree.texels.size());
@@ -160,6 +166,18 @@ uint32_t append(TopLevel& top, const TopLevel& part, uint32_t first_page) {
         top.first_link.push_back(top.first_link[first_page] + part.first_link[page]);
     top.depth = std::max(top.depth, part.depth);
     return begin;
+}
+
+/// Builds the tree over the pages of one part, in its frame.
+TopLevel tree_of_part(const LeafRange& part, std::span<const Page> pages, size_t max_links) {
+    TopLevel own = build_top_level(pages.subspan(part.first, part.count),
+                                   std::max<size_t>(max_links, part.count));
+    if (part.count == pages.size())
+        return own;
+    TopLevel top;
+    append(top, own, part.first);
+    skip_to_page(top, pages.size());
+    return top;
 }
 
 } // namespace
@@ -199,25 +217,33 @@ TopLevel build_top_level(std::span<const Page> pages, size_t max_links) {
 }
 
 TopLevel build_top_level(const Level1& level1, std::span<const Page> pages, size_t max_links,
-                         const NumberedSoup* numbered) {
+                         std::span<const uint32_t> without) {
     Parts parts;
-    if (numbered)
-        parts.add(level1, *numbered);
-    else
-        parts.add(level1, 0, std::array{Place()});
+    parts.add(level1, 0, std::array{Place()}, without);
     if (parts.pages.empty())
         return {};
-    const Leaf scene = scene_leaf(level1.bounds);
-    if (parts.pages.size() > 1)
-        return build_top_level(scene, std::move(parts), pages, max_links);
-    TopLevel top = build_top_level(pages, max_links);
-    if (!(level1.leaves.front().frame == scene.frame)) // all other parts were removed
-        top.way_in = parts.portals[0];
+    const Leaf scene = scene_leaf(without.empty() ? level1.bounds : parts.bounds());
+    TopLevel top;
+    if (parts.pages.size() > 1) {
+        top = build_top_level(scene, std::move(parts), pages, max_links);
+        if (!without.empty())
+            top.scene = scene;
+        return top;
+    }
+    top = tree_of_part(parts.pages[0], pages, max_links);
+    const Leaf& leaf = level1.leaves[parts.pages[0].first];
+    if (!(leaf.frame == scene.frame) || !without.empty()) // there were others
+        top.scene = Leaf{.cell = {}, .box = leaf.grid, .frame = leaf.frame, .grid = leaf.grid};
     return top;
 }
 
-void Parts::add(const Level1& level1, uint32_t first_page, std::span<const Place> places) {
+void Parts::add(const Level1& level1, uint32_t first_page, std::span<const Place> places,
+                std::span<const uint32_t> without) {
     for (const LeafRange& part : parts_of(level1)) {
+        if (std::ranges::binary_search(without, part.first)) {
+            assert(part.count == 1);
+            continue;
+        }
         const Leaf& leaf = level1.leaves[part.first];
         std::vector<Portal> into;
         for (const Place& place : places) {
@@ -228,24 +254,11 @@ void Parts::add(const Level1& level1, uint32_t first_page, std::span<const Place
     }
 }
 
-void Parts::add(const Level1& level1, const NumberedSoup& numbered) {
-    assert(pages.empty());
-    add(level1, 0, std::array{Place()});
-    for (Portal& portal : portals) {
-        const LeafRange part = pages[portal.tree];
-        if (part.count != 1)
-            continue;
-        const std::vector<FarTriangle> found =
-            far_triangles_of(numbered, level1.leaves[part.first], level1.bounds);
-        portal.far = {uint32_t(far_triangles.size()), uint32_t(found.size())};
-        far_triangles.insert(far_triangles.end(), found.begin(), found.end());
-    }
-}
-
-void TopLevel::drop_far_triangles() {
-    far_triangles.clear();
-    for (Portal& portal : portals)
-        portal.far = {};
+Box Parts::bounds() const {
+    Box all;
+    for (const Portal& portal : portals)
+        all.add(portal.bounds);
+    return all;
 }
 
 void Parts::add(LeafRange part, std::span<const Portal> into) {
@@ -261,14 +274,12 @@ TopLevel build_top_level(const Leaf& scene, Parts parts, std::span<const Page> p
     assert(!parts.pages.empty() && parts.portals.size() >= parts.pages.size());
     TopLevel top;
     if (parts.portals.size() == 1 && parts.portals[0].first_number == 0) {
-        assert(parts.pages[0].count == pages.size());
-        top = build_top_level(pages, std::max(max_links, pages.size()));
+        top = tree_of_part(parts.pages[0], pages, max_links);
         top.way_in = parts.portals[0];
         return top;
     }
     top.tree = tree_over(parts.portals, scene);
     const uint32_t depth = top.tree.depth;
-    top.first_link = {0};
     std::vector<uint32_t> begins;
     for (const auto& [first, count] : parts.pages) {
         const size_t links = std::max<size_t>(max_links * count / pages.size(), count);
@@ -278,7 +289,7 @@ TopLevel build_top_level(const Leaf& scene, Parts parts, std::span<const Page> p
         assert(portal.tree < begins.size());
         portal.tree = begins[portal.tree];
     }
-    top.far_triangles = std::move(parts.far_triangles);
+    skip_to_page(top, pages.size());
     top.portals = {portal_into(scene.frame, scene.box)};
     top.portals.insert(top.portals.end(), parts.portals.begin(), parts.portals.end());
     top.depth += depth + 1; // and the word by which a ray comes back

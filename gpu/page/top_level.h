@@ -26,10 +26,12 @@ struct Link {
 };
 
 struct TopLevel {
-    Page tree;                              // all its links lead nowhere; the trees of parts follow
-    std::vector<Portal> portals;            // [0]: the way back; none if all pages share a frame
-    std::vector<FarTriangle> far_triangles; // which portals name
-    std::optional<Portal> way_in;     // into the frame that all pages share, if not the scene's
+    Page tree;                   // all its links lead nowhere; the trees of parts follow
+    std::vector<Portal> portals; // [0]: the way back; none if all pages share a frame
+    /// The box around all that the tree leads to, and the frame in which rays set out; none if they
+    /// are those of the whole scene.
+    std::optional<Leaf> scene;
+    std::optional<Portal> way_in;     // into the frame that all pages share, if they are placed
     std::vector<Link> links;          // those of one page lie together
     std::vector<uint32_t> first_link; // for each page, and one past the last of all
     uint32_t depth = 0;               // nodes on the longest way down, pages included
@@ -39,19 +41,14 @@ struct TopLevel {
     /// Returns the bytes of the pool that no page lies in.
     uint64_t room() const { return tree.bytes() + spare_bytes; }
     /// Returns the bytes of the table of portals, and of the part of it that is used.
-    uint64_t table_bytes() const { return table_bytes_of(std::max(portals.size(), max_portals)); }
-    uint64_t used_table_bytes() const { return table_bytes_of(portals.size()); }
+    uint64_t table_bytes() const { return std::max(portals.size(), max_portals) * kPortalBytes; }
+    uint64_t used_table_bytes() const { return portals.size() * kPortalBytes; }
     bool empty() const { return tree.texels.empty(); }
-    /// Lets rays go through the pages of far triangles instead.
-    void drop_far_triangles();
+    /// Returns `scene`, or that of all in `bounds`.
+    Leaf scene_in(const Box& bounds) const { return scene ? *scene : scene_leaf(bounds); }
     std::span<const Link> links_of(uint32_t page) const {
         assert(page + size_t(1) < first_link.size());
         return std::span(links).subspan(first_link[page], first_link[page + 1] - first_link[page]);
-    }
-
-private:
-    uint64_t table_bytes_of(size_t count) const {
-        return count * kPortalBytes + far_triangles.size() * kFarTriangleBytes;
     }
 };
 
@@ -91,9 +88,9 @@ inline uint64_t max_links(uint64_t pages, uint64_t page_bytes, uint64_t pool_byt
 TopLevel build_top_level(std::span<const Page> pages, size_t max_links);
 
 /// Builds the tree over any number of pages, in the frames of their leaves. Neighbours that share a
-/// frame are a part. numbered: finds the far triangles; null: there shall be none.
+/// frame are a part. without: the leaves, sorted, to whose pages it does not lead.
 TopLevel build_top_level(const Level1& level1, std::span<const Page> pages, size_t max_links,
-                         const NumberedSoup* numbered = nullptr);
+                         std::span<const uint32_t> without = {});
 
 /// Where a mesh lies, and the number from which its triangles count there.
 struct Place {
@@ -105,15 +102,15 @@ struct Place {
 struct Parts {
     std::vector<LeafRange> pages;
     std::vector<Portal> portals; // Portal::tree: the index of the part in `pages`
-    std::vector<FarTriangle> far_triangles;
 
-    /// Adds the parts of a level 1 whose pages begin with `first_page`, in all its places.
-    void add(const Level1& level1, uint32_t first_page, std::span<const Place> places);
-    /// Adds the parts of a level 1 that is not placed, and has the first pages. Its far triangles
-    /// are found.
-    void add(const Level1& level1, const NumberedSoup& numbered);
+    /// Adds the parts of a level 1 whose pages begin with `first_page`, in all its places. without:
+    /// leaves, sorted, that are parts by themselves and are left out.
+    void add(const Level1& level1, uint32_t first_page, std::span<const Place> places,
+             std::span<const uint32_t> without = {});
     /// Adds a part that these portals lead to.
     void add(LeafRange part, std::span<const Portal> into);
+    /// Returns the box around them all.
+    Box bounds() const;
 };
 
 /// Builds the tree over parts. A part that is alone, and whose triangles count from 0, has the tree

@@ -91,7 +91,7 @@ Tracer::Tracer(std::unique_ptr<Ledger> ledger, const MemoryPlan& plan, const Pas
       device_(device),
       top_(top),
       all_fit_(ovc::all_fit(pages, plan.pool(), top.room())),
-      scene_(scene_leaf(bounds)),
+      scene_(top.scene_in(bounds)),
       stack_depth_(stack_depth(top.depth)),
       uploads_(device.passes_in_flight > 1, plan.pool_bytes + plan.ray_bytes()),
       pool_(*ledger_, uploads_, plan.pool(), pages.size(), top.room()) {
@@ -177,7 +177,7 @@ void Tracer::upload_top_level() {
     pool_.upload(0, tree.view());
     if (!has_portals())
         return;
-    const std::vector<uvec4> table = pack_portals(top_.portals, top_.far_triangles);
+    const std::vector<uvec4> table = pack_portals(top_.portals);
     glNamedBufferSubData(portal_buffer_->id(), 0, GLsizeiptr(table.size() * sizeof(uvec4)),
                          table.data());
 }
@@ -201,7 +201,7 @@ bool Tracer::update(const Box& bounds, std::span<const Page> pages, std::span<co
         else
             residency.evict(leaf);
     }
-    scene_ = scene_leaf(bounds);
+    scene_ = top_.scene_in(bounds);
     all_fit_ = ovc::all_fit(pages, pool_.layout(), pool_.begin());
     stack_depth_ = stack_depth(top_.depth);
     long_stacks_ = false;
@@ -260,10 +260,10 @@ bool Tracer::can_run(const KernelVariant& variant) const {
            (!variant.float_pairs || takes_float_pairs());
 }
 
-/// Whether kernels can change frames in pairs of floats. Far triangles need the doubles, and so do
-/// rays that wait: their resume keys must be the same bits in every pass.
+/// Whether kernels can change frames in pairs of floats. Rays that wait cannot: their resume keys
+/// must be the same bits in every pass.
 bool Tracer::takes_float_pairs() const {
-    if (!has_portals() || !options_.certify || may_wait() || !top_.far_triangles.empty())
+    if (!has_portals() || !options_.certify || may_wait())
         return false;
     if (!keeps_float_pairs_)
         keeps_float_pairs_ = driver_keeps_float_pairs();
@@ -299,7 +299,6 @@ ShaderConfig Tracer::shader_config(RayKind kind, const KernelVariant& variant) c
     config.counts = options_.counts;
     config.portals = has_portals();
     config.float_pairs = variant.float_pairs && takes_float_pairs();
-    config.far_triangles = !top_.far_triangles.empty();
     config.may_wait = may_wait();
     config.tell_active = active_buffer_.has_value();
     config.pool_buffers = pool_.layout().count();

@@ -29,7 +29,7 @@ TuningLimits TuningLimits::thorough() {
             .kind_seconds = any,
             .due_seconds = 0,
             .min_rays = 1,
-            .comparison = {.rounds = 15, .worthwhile = 0.015},
+            .comparison = {.rounds = 15, .worthwhile = 0.025},
             .trial_seconds = 0.01,
             .in_one_go = true};
 }

@@ -7,11 +7,11 @@
 namespace ovc {
 namespace {
 
-constexpr uint32_t kSwitches = 20;
+constexpr uint32_t kSwitches = 19;
 
 /// Returns the kernel whose switches have the values of these bits, or nothing where no kernel may
 /// have them together: packets and refill are the compute kernel's, packets go through no portals,
-/// far triangles lie behind some and need doubles, and long stacks are arrays where a driver loses
+/// and long stacks are arrays where a driver loses
 /// words of those in registers. Storage buffers are no images.
 std::optional<ShaderConfig> kernel_of(uint32_t bits) {
     const auto take = [&] { return std::exchange(bits, bits >> 1) & 1; };
@@ -20,7 +20,6 @@ std::optional<ShaderConfig> kernel_of(uint32_t bits) {
     config.any_hit = take();
     config.certify = take();
     config.portals = take();
-    config.far_triangles = take();
     config.may_wait = take();
     config.tell_active = take();
     config.loose_pairs = take();
@@ -44,9 +43,9 @@ std::optional<ShaderConfig> kernel_of(uint32_t bits) {
         return std::nullopt;
     if ((images && storage) || (!config.compute && config.group_size != 64))
         return std::nullopt;
-    if (config.portals ? config.packet > 1 : config.far_triangles || config.float_pairs)
+    if (config.portals ? config.packet > 1 : config.float_pairs)
         return std::nullopt;
-    if (config.float_pairs && (config.far_triangles || config.may_wait || !config.certify))
+    if (config.float_pairs && (config.may_wait || !config.certify))
         return std::nullopt;
     if (config.stack_registers && config.stack_depth > 32)
         return std::nullopt;

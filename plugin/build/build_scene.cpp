@@ -46,10 +46,9 @@ bool add_tree(BuiltScene& scene, const TwoLevelOptions& options, const MemoryPla
                is_usable(scene.top, scene.pages,
                          {room_for_pool(scene, options, plan), plan.buffer_bytes});
     };
+    scene.far = far_triangles_of(scene);
     for (const size_t some : {links, pages}) {
         scene.top = top_level_of(scene, some);
-        if (!is_fine())
-            scene.top.drop_far_triangles();
         if (!is_fine())
             continue;
         if (scene.expects_updates())

@@ -187,7 +187,7 @@ uint64_t BuiltScene::duplicate_count() const {
 
 uint64_t BuiltScene::host_bytes() const {
     uint64_t bytes = top.tree.bytes() + top.portals.size() * sizeof(Portal) +
-                     top.far_triangles.size() * sizeof(FarTriangle);
+                     far.triangles.size() * sizeof(FarTriangle);
     const auto add = [&](const BuiltScene& scene) {
         bytes += scene.level1.reference_count() * sizeof(TriangleId) +
                  scene.level1.leaves.size() * sizeof(Leaf) +
@@ -395,9 +395,9 @@ void gather_pages(BuiltScene& scene) {
 }
 
 TopLevel top_level_of(const BuiltScene& scene, size_t max_links) {
-    const NumberedSoup numbered{scene.soup, scene.numbers};
+    const std::span<const uint32_t> without = scene.far.leaves;
     if (scene.shared.empty())
-        return build_top_level(scene.level1, scene.pages, max_links, &numbered);
+        return build_top_level(scene.level1, scene.pages, max_links, without);
     Parts parts;
     uint32_t pages = uint32_t(scene.level1.leaves.size()); // in the scene's own tree
     for (const SharedMesh& mesh : scene.shared)
@@ -405,14 +405,17 @@ TopLevel top_level_of(const BuiltScene& scene, size_t max_links) {
     if (pages > scene.level1.leaves.size())
         parts.add({0, pages}, std::array{portal_into(scene.home->frame, scene.home->grid)});
     else
-        parts.add(scene.level1, numbered);
+        parts.add(scene.level1, 0, std::array{Place()}, without);
     for (const SharedMesh& mesh : scene.shared) {
         assert(mesh.first_page + mesh.scene.pages.size() <= scene.pages.size());
         if (!mesh.is_home)
             (mesh.rest ? add_left : add_unplaced)(parts, scene, mesh);
     }
-    return build_top_level(scene_leaf(scene.level1.bounds), std::move(parts), scene.pages,
-                           max_links);
+    const Leaf around = scene_leaf(without.empty() ? scene.level1.bounds : parts.bounds());
+    TopLevel top = build_top_level(around, std::move(parts), scene.pages, max_links);
+    if (!without.empty())
+        top.scene = around;
+    return top;
 }
 
 } // namespace ovc

@@ -13,6 +13,7 @@
 #include "gpu/page/page.h"
 #include "gpu/page/top_level.h"
 #include "kdtree/partition.h"
+#include "plugin/build/far_triangles.h"
 #include "plugin/build/shared_meshes.h"
 #include "shaders/layout.h"
 
@@ -91,7 +92,8 @@ struct BuiltScene {
     /// The frame and grid for pages of shared meshes that are home; those of level 1's leaves where
     /// these share one.
     std::optional<Leaf> home;
-    TopLevel top;               // over the pages
+    FarTriangles far;           // which rays meet first; the tree does not lead to their pages
+    TopLevel top;               // over the other pages
     LeafStore* store = nullptr; // where the pages lie; null: in memory
     bool from_saved = false;
     bool any_limits = false;  // LevelsKey::any_limits

@@ -8,14 +8,18 @@
 
 namespace ovc {
 
-/// As walk_tree_together(). A page that cannot be read holds nothing, and the store knows of that.
+/// As walk_tree_together(), after a visit to each far triangle. A page that cannot be read holds
+/// nothing, and the store knows of that.
 template <class Prepared, class Visit, class Limit>
 bool walk_scene_together(const BuiltScene& scene, RaySet all, Prepared&& prepared, Visit&& visit,
                          Limit&& limit) {
     if (scene.pages.empty())
         return false;
+    for (const FarTriangle& far : scene.far.triangles)
+        if (visit(far.number, all))
+            return true;
     const auto walk = [&](auto&& units_of) {
-        return walk_tree_together(scene.top, units_of, scene_leaf(scene.level1.bounds), all,
+        return walk_tree_together(scene.top, units_of, scene.top.scene_in(scene.level1.bounds), all,
                                   prepared, visit, limit);
     };
     // Two walks, so that the one in memory asks nothing at its links.

@@ -104,7 +104,7 @@ private:
         std::iota(rays.begin(), rays.end(), uint32_t(part + first));
         size_t asked = 0;
         in_lanes(rays, [&](std::span<const uint32_t> some, size_t) {
-            const RayStates states = resolver_.states(some);
+            RayStates states = resolver_.states(some);
             const uint32_t begins = resolver_.begins(states, some);
             resolver_.send(batch.sent, first + asked, states, some, begins);
             for (size_t lane = 0; lane < some.size(); ++lane)

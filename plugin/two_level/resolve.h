@@ -3,6 +3,7 @@
 // arithmetic.
 #pragma once
 
+#include "core/lanes/far_triangle.h"
 #include "core/lanes/hit_batch.h"
 #include "core/lanes/rounding_batch.h"
 #include "core/system/parallel.h"
@@ -71,10 +72,9 @@ public:
           scene_(tracing.scene),
           query_(query),
           are_whole_(are_whole),
-          bounds_(scene_leaf(scene_.level1.bounds)),
-          ahead_{scene_.level1.bounds.empty(), scene_.level1.padding,
-                 LanesBox(scene_.level1.bounds),
-                 LanesBox(scene_.level1.bounds.padded(scene_.level1.padding))} {}
+          may_have_hit_(!are_whole || !scene_.far.empty()),
+          scene_leaf_(scene_.top.scene_in(scene_.level1.bounds)),
+          ahead_(scene_ahead(scene_)) {}
     ~Resolver() {
         ovc_statistics& statistics = tracing_.statistics;
         statistics.invalid_rays += invalid_;
@@ -112,15 +112,22 @@ public:
     }
 
     /// Returns a bit for each of these rays, of which these are the states, about which the kernel
-    /// is to be asked. This has answered the others.
-    uint32_t begins(const RayStates& states, std::span<const uint32_t> rays) {
+    /// is to be asked, and ends those that hit far triangles there. This has answered the others.
+    uint32_t begins(RayStates& states, std::span<const uint32_t> rays) {
         const uint32_t all = RayLanes::first(rays.size());
+        FarMeeting far;
+        if (!scene_.far.empty()) {
+            far = meet_far(scene_.far.triangles, states.rays, states.skip.data());
+            end_at_hits(states, far);
+        }
         const LanesAhead ahead = look_ahead(ahead_, states.rays);
         const uint32_t valid = ahead.valid & all;
-        const uint32_t begin = valid & ahead.walks & ahead.meets;
+        uint32_t begin = valid & ahead.walks & ahead.meets;
         // Of whole answers each is entered, misses as well.
-        for (uint32_t none = are_whole_ ? all & ~begin : all; none != 0; none &= none - 1)
+        for (uint32_t none = may_have_hit_ ? all : all & ~begin; none != 0; none &= none - 1)
             query_.set_miss(rays[size_t(std::countr_zero(none))]);
+        if (const uint32_t meets = (far.hits | far.unclear) & valid & ahead.walks)
+            begin &= ~enter_far(far, meets, states, rays);
         if (valid != all)
             invalid_ += uint64_t(std::popcount(all & ~valid));
         // This comes before the clip: where double cannot walk, rounding may carry a ray past the
@@ -154,7 +161,8 @@ public:
         Decided decided;
         std::vector<InDoubt> in_doubt;
         // Without any more of an answer, where nothing else is known about rays.
-        const bool names_suffice = are_whole_ && tracing_.options.certify && query_.without.empty();
+        const bool names_suffice =
+            !may_have_hit_ && tracing_.options.certify && query_.without.empty();
         const auto look = [&](size_t j) {
             const Answer answer = answers[first + j];
             if (!resolve_one(rays[j], answer, decided, go_on))
@@ -163,7 +171,7 @@ public:
         const auto enter = [&](const Hit& hit, size_t j) {
             if (names_suffice)
                 query_.set(rays[j], hit);
-            else if (hit.t > exclusion(rays[j]).after.t)
+            else if (comes_next(rays[j], hit))
                 enter_certain(rays[j], answers[first + j].where, hit, go_on);
             else
                 look(j);
@@ -202,7 +210,7 @@ public:
                     doubtful.finish(enter_nearest, look);
                 continue;
             }
-            if (!is_certain_hit(rays[j], answer)) {
+            if (!is_certain_hit(answer)) {
                 look(j);
                 continue;
             }
@@ -258,12 +266,71 @@ private:
         else if (scene_.top.way_in)
             local_ray(*scene_.top.way_in, ray, OVC_NO_TRIANGLE, false, time);
         else
-            local_ray(bounds_, ray, OVC_NO_TRIANGLE, false, time);
+            local_ray(scene_leaf_, ray, OVC_NO_TRIANGLE, false, time);
         return time.begin_of(answer.first_t());
     }
 
     /// Returns ray i as the host gave it.
     PreparedRay prepared(uint32_t i) const { return PreparedRay(query_.rays[i], exclusion(i)); }
+
+    static LanesScene scene_ahead(const BuiltScene& scene) {
+        const Box& all = scene.level1.bounds;
+        const Box& reached = scene.top.scene ? scene.top.scene->box : all;
+        const double padding = scene.level1.padding;
+        return {all.empty(), padding, LanesBox(all), LanesBox(reached.padded(padding))};
+    }
+
+    static void end_at_hits(RayStates& states, const FarMeeting& far) {
+        for (uint32_t lanes = far.hits; lanes != 0; lanes &= lanes - 1) {
+            const int lane = std::countr_zero(lanes);
+            states.rays.t_max[lane] = std::min(states.rays.t_max[lane], far.last[lane]);
+        }
+    }
+
+    /// Enters what rays, those that have a bit in `meets`, hit of the far triangles. Returns those
+    /// that need not be asked about any more.
+    uint32_t enter_far(const FarMeeting& far, uint32_t meets, RayStates& states,
+                       std::span<const uint32_t> rays) {
+        uint32_t done = 0;
+        Decided decided;
+        HitBatch<size_t> certain; // tagged with the lane
+        const auto decide = [&](size_t lane) {
+            const PreparedRay p = prepared(rays[lane]);
+            Nearest nearest = scene_.nearest_of(p);
+            for (const FarTriangle& triangle : scene_.far.triangles)
+                scene_.offer(nearest, p, scene_.numbers.id(triangle.number));
+            count_flagged(rays[lane]);
+            if (!nearest.is_hit())
+                return;
+            enter_decided(rays[lane], nearest.best().found, decided);
+            states.rays.t_max[lane] = std::min(states.rays.t_max[lane], nearest.limit());
+            done |= uint32_t(Query::kAnyHit) << lane;
+        };
+        for (uint32_t lanes = meets; lanes != 0; lanes &= lanes - 1) {
+            const auto lane = size_t(std::countr_zero(lanes));
+            const uint32_t i = rays[lane];
+            const bool hits = far.hits >> lane & 1;
+            if (hits && Query::kAnyHit && query_.without.after.empty()) {
+                query_.set(i, kSomeHit);
+                done |= 1u << lane;
+            } else if (hits && !Query::kAnyHit && !(far.unclear >> lane & 1)) {
+                certain.add(query_.rays, i, scene_.soup,
+                            scene_.seen(far.nearest[lane], exclusion(i).skip), lane);
+            } else {
+                decide(lane);
+            }
+        }
+        certain.finish(
+            [&](const Hit& hit, size_t lane) {
+                if (hit.t > exclusion(rays[lane]).after.t)
+                    query_.set(rays[lane], hit);
+                else
+                    decide(lane);
+            },
+            decide);
+        enter_all(decided);
+        return done;
+    }
 
     static constexpr size_t kAhead = 8; // answers between fetching triangles and reading them
     /// Fetches the triangles of an answer that is to be resolved soon.
@@ -293,15 +360,21 @@ private:
     }
 
     /// Whether the answer names the nearest hit, and nothing is left to decide but t, u and v.
-    bool is_certain_hit(uint32_t i, const Answer& answer) const {
+    bool is_certain_hit(const Answer& answer) const {
         return !Query::kAnyHit && tracing_.options.certify && answer.prim < OVC_MAX_TRIANGLES &&
-               !answer.has_further() && !was_hit(i);
+               !answer.has_further();
+    }
+    /// Whether a hit, rounded, lies behind the place that the ray's hits lie behind, and before the
+    /// hit that was found before this answer, if there was another.
+    bool comes_next(uint32_t i, const Hit& hit) const {
+        const bool is_first = !was_hit(i) || hit.t < query_.hit(i).t || hit.id == query_.hit(i).id;
+        return is_first && hit.t > exclusion(i).after.t;
     }
     /// Whether the ray was found to hit something before this answer.
-    bool was_hit(uint32_t i) const { return !are_whole_ && query_.was_hit(i); }
+    bool was_hit(uint32_t i) const { return may_have_hit_ && query_.was_hit(i); }
     /// Enters that the ray hits nothing, unless that has been said when it began.
     void enter_miss(uint32_t i) {
-        if (are_whole_)
+        if (!may_have_hit_)
             query_.set_miss(i);
     }
 
@@ -361,14 +434,18 @@ private:
             return true;
         }
         const PreparedRay p = prepared(i);
-        // A hit that was found before may lie behind something beyond the end of the ray.
         const bool was_ended = answer.prim == OVC_ENDED;
-        if (was_ended && (was_hit(i) || !p.after.is_before_all()))
+        if (was_ended && !p.after.is_before_all())
             return false;
         Nearest nearest = scene_.nearest_of(p);
-        if (was_hit(i))
-            nearest.offer(scene_.soup.triangle(query_.hit(i).id), query_.hit(i).id);
-        if (!found.offer_to(nearest, p, scene_) || (was_ended && !nearest.is_hit()))
+        TriangleId before; // which may lie behind something beyond the end of the ray
+        if (was_hit(i)) {
+            before = query_.hit(i).id;
+            nearest.offer(scene_.soup.triangle(before), before);
+        }
+        if (!found.offer_to(nearest, p, scene_))
+            return false;
+        if (was_ended && (!nearest.is_hit() || nearest.best().found.hit.id == before))
             return false;
         enter_resolved(i, answer, nearest.best().found, nearest.limit(), decided, go_on);
         return true;
@@ -481,7 +558,8 @@ private:
     const BuiltScene& scene_;
     Query query_;
     const bool are_whole_;
-    const Leaf bounds_; // of the scene, and its frame
+    const bool may_have_hit_; // a ray, before its answer
+    const Leaf scene_leaf_;   // the frame in which rays set out, and the box around its pages
     const LanesScene ahead_;
     std::atomic<uint64_t> invalid_{0};
     std::atomic<uint64_t> flagged_{0};

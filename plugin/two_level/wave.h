@@ -142,7 +142,7 @@ private:
 
     void start_some(std::span<const uint32_t> rays) {
         in_lanes(rays, [&](std::span<const uint32_t> some, size_t) {
-            const RayStates states = resolver_.states(some);
+            RayStates states = resolver_.states(some);
             const uint32_t begins = resolver_.begins(states, some);
             for (size_t lane = 0; lane < some.size(); ++lane)
                 states_[some[lane]] =

@@ -55,8 +55,7 @@ struct PooledScene {
         LocalTime time;
         const Leaf scene = scene_leaf(level1.bounds);
         for (const Ray& ray : rays)
-            local.push_back(top.way_in ? local_ray(*top.way_in, ray, OVC_NO_TRIANGLE, any_hit, time)
-                                       : local_ray(scene, ray, OVC_NO_TRIANGLE, any_hit, time));
+            local.push_back(local_ray(scene, ray, OVC_NO_TRIANGLE, any_hit, time));
         return local;
     }
 };

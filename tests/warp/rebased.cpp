@@ -36,7 +36,7 @@ namespace ovc {
 Rebased rebased(const RayState& ray, const Portal& portal) {
     using namespace ovc_rebased;
     ray_texels = std::bit_cast<std::array<glsl::uvec4, OVC_RAY_TEXELS>>(ray);
-    const std::vector<uvec4> packed = pack_portals(std::span(&portal, 1), {});
+    const std::vector<uvec4> packed = pack_portals(std::span(&portal, 1));
     for (size_t i = 0; i < portal_texels.size(); ++i)
         portal_texels[i] = {packed[i].x, packed[i].y, packed[i].z, packed[i].w};
     const ovc_rebased::LocalRay local = local_ray(world_ray(0), portal_at(0));

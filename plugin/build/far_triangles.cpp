@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plugin/build/far_triangles.h"
+
+#include "plugin/build/built_scene.h"
+
+#include <algorithm>
+#include <optional>
+
+namespace ovc {
+namespace {
+
+/// Each ray is tested with all of them; above this a tree of float32 boxes is faster.
+constexpr size_t kMaxOfLeaf = 16;
+constexpr size_t kMaxOfScene = 32;
+/// A leaf reaches far if it is at least this part of the scene.
+constexpr double kMinReach = 1.0 / 4;
+
+/// Returns the triangles of the leaf; none where they are not few, not far, or one is too thin.
+std::vector<FarTriangle> far_triangles_of(const BuiltScene& scene, const Leaf& leaf) {
+    if (leaf.list().size() > kMaxOfLeaf ||
+        max_component(leaf.box.extent()) < kMinReach * max_component(scene.level1.bounds.extent()))
+        return {};
+    std::vector<FarTriangle> all;
+    for (const TriangleId id : leaf.list()) {
+        const std::optional<FarTriangle> far =
+            far_triangle(scene.soup.triangle(id), scene.numbers.of(id));
+        if (!far)
+            return {};
+        all.push_back(*far);
+    }
+    return all;
+}
+
+bool contains(std::span<const FarTriangle> triangles, uint32_t number) {
+    return std::ranges::find(triangles, number, &FarTriangle::number) != triangles.end();
+}
+
+} // namespace
+
+FarTriangles far_triangles_of(const BuiltScene& scene) {
+    // Pages of meshes that came to rest hang in one tree with those of level 1.
+    if (std::ranges::any_of(scene.shared, &SharedMesh::is_home))
+        return {};
+    FarTriangles far;
+    size_t left = scene.shared.size(); // parts of the scene
+    for (const LeafRange& part : parts_of(scene.level1)) {
+        std::vector<FarTriangle> own;
+        if (part.count == 1)
+            own = far_triangles_of(scene, scene.level1.leaves[part.first]);
+        if (own.empty() || far.triangles.size() + own.size() > kMaxOfScene) {
+            ++left;
+            continue;
+        }
+        far.leaves.push_back(part.first);
+        for (const FarTriangle& triangle : own) // leaves share triangles
+            if (!contains(far.triangles, triangle.number))
+                far.triangles.push_back(triangle);
+    }
+    return left > 0 ? far : FarTriangles();
+}
+
+} // namespace ovc
