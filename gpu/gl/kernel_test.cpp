@@ -29,6 +29,7 @@ TEST(ShaderSource, IncludesAreReplacedAndDefinesFollowTheVersion) {
                     "box.glsl", "children.glsl", "triangle.glsl", "times.glsl", "float_pairs.glsl",
                     "times_float_pairs.glsl", "times_doubles.glsl", "occluder.glsl", "found.glsl",
                     "pair.glsl", "traverse.glsl", "ray.glsl", "portals.glsl", "local_ray.glsl",
+                    "rebase_float_pairs.glsl", "rebase_doubles.glsl", "trace.glsl"));
 }
 
 TEST(ShaderSource, AMissingFileIsNamed) {
