@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/texture/bump.h"
 
+#include "core/texture/pattern.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
