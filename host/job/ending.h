@@ -7,6 +7,7 @@
 #include "core/system/stopwatch.h"
 #include "host/job/render_job.h"
 #include "host/output/stats.h"
+#include "host/ranks/ranks.h"
 
 #include <vector>
 

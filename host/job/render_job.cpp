@@ -12,6 +12,7 @@
 #include "host/job/view.h"
 #include "host/job/watchers.h"
 #include "host/output/stats.h"
+#include "host/ranks/ranks.h"
 #include "host/render/stage.h"
 #include "host/scene/scene_cache.h"
 #include "host/scene/scene_summary.h"

@@ -3,6 +3,7 @@
 #include "importers/pov/gather.h"
 
 #include "importers/pov/parse/texture.h"
+#include "importers/pov/shapes/bounds.h"
 #include "importers/pov/trace.h"
 #include "importers/pov/values/transform.h"
 
