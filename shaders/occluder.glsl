@@ -37,16 +37,6 @@ bool take(inout Found found, Corner a, Corner b, Corner c, Edges e, Depths depth
     return took;
 }
 
-// The same for a triangle whose t is known.
-bool take(inout Found found, Candidate c, bool valid, uint prim, uint order) {
-    bool took = valid && c.certain && c.lo > 0.0 && c.hi < found.best_hi;
-    bool may_hit = valid && c.possible && !took && c.hi >= 0.0 && c.lo <= found.best_hi;
-    found.further[2] = may_hit ? found.further[1] : found.further[2];
-    found.further[1] = may_hit ? found.further[0] : found.further[1];
-    found.further[0] = may_hit ? prim : found.further[0];
-    return took;
-}
-
 // A triangle that planes cut may be a further candidate of its own parts. It is then named again
 // and resolved once more.
 bool is_known(Found found, uint prim) { return false; }

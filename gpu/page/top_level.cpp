@@ -222,17 +222,11 @@ TopLevel build_top_level(const Level1& level1, std::span<const Page> pages, size
     parts.add(level1, 0, std::array{Place()}, without);
     if (parts.pages.empty())
         return {};
-    const Leaf scene = scene_leaf(without.empty() ? level1.bounds : parts.bounds());
-    TopLevel top;
-    if (parts.pages.size() > 1) {
-        top = build_top_level(scene, std::move(parts), pages, max_links);
-        if (!without.empty())
-            top.scene = scene;
-        return top;
-    }
-    top = tree_of_part(parts.pages[0], pages, max_links);
+    if (parts.pages.size() > 1)
+        return build_top_level(level1.bounds, std::move(parts), pages, max_links);
+    TopLevel top = tree_of_part(parts.pages[0], pages, max_links);
     const Leaf& leaf = level1.leaves[parts.pages[0].first];
-    if (!(leaf.frame == scene.frame) || !without.empty()) // there were others
+    if (!parts.has_all || !(leaf.frame == scene_leaf(level1.bounds).frame)) // there were others
         top.scene = Leaf{.cell = {}, .box = leaf.grid, .frame = leaf.frame, .grid = leaf.grid};
     return top;
 }
@@ -242,6 +236,7 @@ void Parts::add(const Level1& level1, uint32_t first_page, std::span<const Place
     for (const LeafRange& part : parts_of(level1)) {
         if (std::ranges::binary_search(without, part.first)) {
             assert(part.count == 1);
+            has_all = false;
             continue;
         }
         const Leaf& leaf = level1.leaves[part.first];
@@ -269,15 +264,20 @@ void Parts::add(LeafRange part, std::span<const Portal> into) {
     pages.push_back(part);
 }
 
-TopLevel build_top_level(const Leaf& scene, Parts parts, std::span<const Page> pages,
+TopLevel build_top_level(const Box& bounds, Parts parts, std::span<const Page> pages,
                          size_t max_links) {
     assert(!parts.pages.empty() && parts.portals.size() >= parts.pages.size());
+    const Leaf scene = scene_leaf(parts.has_all ? bounds : parts.bounds());
     TopLevel top;
     if (parts.portals.size() == 1 && parts.portals[0].first_number == 0) {
         top = tree_of_part(parts.pages[0], pages, max_links);
         top.way_in = parts.portals[0];
+        if (!parts.has_all)
+            top.scene = scene;
         return top;
     }
+    if (!parts.has_all)
+        top.scene = scene;
     top.tree = tree_over(parts.portals, scene);
     const uint32_t depth = top.tree.depth;
     std::vector<uint32_t> begins;

@@ -102,6 +102,7 @@ struct Place {
 struct Parts {
     std::vector<LeafRange> pages;
     std::vector<Portal> portals; // Portal::tree: the index of the part in `pages`
+    bool has_all = true;         // no leaf was left out
 
     /// Adds the parts of a level 1 whose pages begin with `first_page`, in all its places. without:
     /// leaves, sorted, that are parts by themselves and are left out.
@@ -114,8 +115,8 @@ struct Parts {
 };
 
 /// Builds the tree over parts. A part that is alone, and whose triangles count from 0, has the tree
-/// in its frame. scene: the box and frame of the whole scene.
-TopLevel build_top_level(const Leaf& scene, Parts parts, std::span<const Page> pages,
+/// in its frame. bounds: of the whole scene.
+TopLevel build_top_level(const Box& bounds, Parts parts, std::span<const Page> pages,
                          size_t max_links);
 
 /// Whether rays can go through the tree in a pool: the tree fits the first buffer, the largest page

@@ -11,8 +11,8 @@ constexpr uint32_t kSwitches = 19;
 
 /// Returns the kernel whose switches have the values of these bits, or nothing where no kernel may
 /// have them together: packets and refill are the compute kernel's, packets go through no portals,
-/// and long stacks are arrays where a driver loses
-/// words of those in registers. Storage buffers are no images.
+/// and long stacks are arrays where a driver loses words of those in registers. Storage buffers are
+/// no images.
 std::optional<ShaderConfig> kernel_of(uint32_t bits) {
     const auto take = [&] { return std::exchange(bits, bits >> 1) & 1; };
     ShaderConfig config;

@@ -411,11 +411,7 @@ TopLevel top_level_of(const BuiltScene& scene, size_t max_links) {
         if (!mesh.is_home)
             (mesh.rest ? add_left : add_unplaced)(parts, scene, mesh);
     }
-    const Leaf around = scene_leaf(without.empty() ? scene.level1.bounds : parts.bounds());
-    TopLevel top = build_top_level(around, std::move(parts), scene.pages, max_links);
-    if (!without.empty())
-        top.scene = around;
-    return top;
+    return build_top_level(scene.level1.bounds, std::move(parts), scene.pages, max_links);
 }
 
 } // namespace ovc
