@@ -4,6 +4,7 @@
 #pragma once
 
 #include "core/exact/triangle.h"
+#include "tests/random.h"
 
 #include <cstdint>
 #include <random>
@@ -15,23 +16,6 @@ namespace ovc::test {
 struct NamedSoup {
     std::string name;
     Soup soup;
-};
-
-/// Returns uniform numbers in [lo, hi), made from raw bits so that they are the same everywhere.
-class Random {
-public:
-    explicit Random(uint64_t seed) : engine_(seed) {}
-
-    double operator()(double lo, double hi) {
-        return lo + (hi - lo) * (double(engine_() >> 11) * 0x1p-53);
-    }
-    dvec3 point(double lo, double hi) {
-        return {(*this)(lo, hi), (*this)(lo, hi), (*this)(lo, hi)};
-    }
-    uint64_t below(uint64_t n) { return engine_() % n; }
-
-private:
-    std::mt19937_64 engine_;
 };
 
 inline Soup one_chunk(std::vector<vec3> corners, dvec3 origin = dvec3(0)) {
@@ -51,6 +35,27 @@ inline Soup random_soup(uint64_t seed, size_t count, double size, dvec3 origin =
     }
     return one_chunk(std::move(corners), origin);
 }
+
+/// A square of a plane: what lies from `through` as far as along and across to either side.
+struct Floor {
+    dvec3 through;
+    dvec3 along;
+    dvec3 across;
+
+    dvec3 at(double a, double b) const { return through + a * along + b * across; }
+
+    /// Returns it as n x n quads.
+    Chunk chunk(int n) const {
+        const auto corner = [&](int i, int j) { return at(2.0 * i / n - 1, 2.0 * j / n - 1); };
+        std::vector<dvec3> corners;
+        for (int i = 0; i < n; ++i)
+            for (int j = 0; j < n; ++j)
+                corners.insert(corners.end(),
+                               {corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j),
+                                corner(i + 1, j + 1), corner(i, j + 1)});
+        return Chunk::owning_doubles(dvec3(0), std::move(corners));
+    }
+};
 
 /// Returns a closed n x n torus-like sheet of quads, which share edges and vertices everywhere.
 inline Soup closed_grid(int n, dvec3 origin = dvec3(0)) {

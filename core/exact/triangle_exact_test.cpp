@@ -3,28 +3,21 @@
 // vertices, grazing, in planes, at the ends of the ray, at ties.
 #include "core/exact/triangle.h"
 #include "tests/exact.h"
+#include "tests/random.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <random>
 
 namespace ovc {
 namespace {
 
-class Lattice {
+class Lattice : public test::Random {
 public:
-    explicit Lattice(uint64_t seed) : engine_(seed) {}
-    double operator()(double lo, double hi) {
-        return lo + (hi - lo) * (double(engine_() >> 11) * 0x1p-53);
-    }
-    dvec3 point() { return {(*this)(-1, 1), (*this)(-1, 1), (*this)(-1, 1)}; }
+    using test::Random::Random;
+    dvec3 point() { return test::Random::point(-1, 1); }
     /// Returns a point of few bits, so that exact coincidences happen.
     dvec3 lattice() { return glm::round(point() * 8.0) / 2.0; }
-    uint64_t below(uint64_t n) { return engine_() % n; }
-
-private:
-    std::mt19937_64 engine_;
 };
 
 struct Coincidence {

@@ -2,13 +2,13 @@
 // The reference tests: watertight, inclusive, conservative, and right where exact arithmetic can
 // tell.
 #include "core/exact/triangle.h"
+#include "tests/random.h"
 
 #include <boost/multiprecision/cpp_int.hpp>
 #include <gtest/gtest.h>
 
 #include <limits>
 #include <map>
-#include <random>
 #include <vector>
 
 namespace ovc {
@@ -20,19 +20,11 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInf = std::numeric_limits<double>::infinity();
 const Triangle kUnit = {dvec3(0), dvec3(1, 0, 0), dvec3(0, 1, 0)};
 
-struct Random {
-    std::mt19937_64 bits;
+struct Random : test::Random {
+    using test::Random::Random;
 
-    explicit Random(uint64_t seed) : bits(seed) {}
-
-    double uniform(double from, double to) {
-        return from + (to - from) * (double(bits() >> 11) * 0x1p-53);
-    }
-    dvec3 in_cube(double half) {
-        const double x = uniform(-half, half), y = uniform(-half, half), z = uniform(-half, half);
-        return {x, y, z};
-    }
-    size_t below(size_t count) { return bits() % count; }
+    double uniform(double from, double to) { return (*this)(from, to); }
+    dvec3 in_cube(double half) { return point(-half, half); }
 };
 
 std::optional<Hit> shoot(const Ray& ray, const Triangle& triangle) {

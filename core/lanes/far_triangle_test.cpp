@@ -3,29 +3,20 @@
 #include "core/lanes/far_triangle.h"
 
 #include "tests/exact.h"
+#include "tests/random.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 
 namespace ovc {
 namespace {
 
-class FarRandom {
-public:
-    explicit FarRandom(uint64_t seed) : engine_(seed) {}
-    double operator()(double lo, double hi) {
-        return std::uniform_real_distribution<double>(lo, hi)(engine_);
-    }
-    dvec3 point(double reach) {
-        return {(*this)(-reach, reach), (*this)(-reach, reach), (*this)(-reach, reach)};
-    }
-
-private:
-    std::mt19937_64 engine_;
-};
+/// Returns a point whose coordinates are up to `reach`, of either sign.
+dvec3 point(test::Random& random, double reach) {
+    return random.point(-reach, reach);
+}
 
 dvec3 point_of(const double (&v)[3]) {
     return {v[0], v[1], v[2]};
@@ -34,11 +25,11 @@ dvec3 point_of(const double (&v)[3]) {
 TEST(FarTriangle, TellsTheWeightsOfPointsWithinItsBounds) {
     size_t triangles = 0;
     for (uint64_t seed = 0; seed < 3000; ++seed) {
-        FarRandom random(seed);
+        test::Random random(seed);
         const double size = std::pow(10.0, random(-6, 8));
-        const dvec3 middle = random.point(9 * size);
-        const Triangle t{middle + random.point(size), middle + random.point(size),
-                         middle + random.point(size)};
+        const dvec3 middle = point(random, 9 * size);
+        const Triangle t{middle + point(random, size), middle + point(random, size),
+                         middle + point(random, size)};
         const auto far = far_triangle(t, 7);
         if (!far)
             continue;
@@ -79,17 +70,17 @@ struct FarCase {
     std::array<uint32_t, RayLanes::kCount> skip;
 
     explicit FarCase(uint64_t seed) {
-        FarRandom random(seed);
+        test::Random random(seed);
         const double size = std::pow(10.0, random(-4, 9));
-        const dvec3 middle = random.point(seed % 3 ? 0 : 1e6);
-        const dvec3 corner = middle + random.point(size), ab = random.point(size),
-                    ac = random.point(size);
+        const dvec3 middle = point(random, seed % 3 ? 0 : 1e6);
+        const dvec3 corner = middle + point(random, size), ab = point(random, size),
+                    ac = point(random, size);
         triangles.push_back({corner, corner + ab, corner + ac});
         if (seed % 2)
             triangles.push_back({corner + ab, corner + ab + ac, corner + ac});
         for (uint64_t more = seed % 5; more > 1; --more)
-            triangles.push_back({middle + random.point(size), middle + random.point(size),
-                                 middle + random.point(size)});
+            triangles.push_back({middle + point(random, size), middle + point(random, size),
+                                 middle + point(random, size)});
         for (uint32_t i = 0; i < triangles.size(); ++i)
             if (const auto found = far_triangle(triangles[i], i))
                 far.push_back(*found);
@@ -103,12 +94,12 @@ struct FarCase {
         gather(addresses.data(), lanes);
     }
 
-    Ray ray(FarRandom& random, const dvec3& middle, size_t kind) {
+    Ray ray(test::Random& random, const dvec3& middle, size_t kind) {
         const Triangle& t = triangles[kind % triangles.size()];
         const bool at_side = kind % 7 == 3, along = kind % 7 == 5;
         const double b = random(-0.2, 1.2), c = at_side ? 1 - b : random(-0.2, 1.2);
         const dvec3 aim = t[0] + b * (t[1] - t[0]) + c * (t[2] - t[0]);
-        Ray ray{.org = middle + random.point(std::pow(10.0, random(-3, 3)))};
+        Ray ray{.org = middle + point(random, std::pow(10.0, random(-3, 3)))};
         ray.dir = along ? (t[1] - t[0]) * random(-1, 1) : aim - ray.org;
         if (kind % 7 == 4)
             ray.org = aim;

@@ -10,23 +10,9 @@
 namespace ovc {
 namespace {
 
-/// n x n quads, 2 reach wide.
-struct Square {
-    int n;
-    double reach;
-    double height = 0;
-};
-
-Chunk chunk_of(const Square& square) {
-    const int n = square.n;
-    const auto along = [&](int i) { return square.reach * (2.0 * i / n - 1); };
-    const auto at = [&](int i, int j) { return dvec3(along(i), along(j), square.height); };
-    std::vector<dvec3> corners;
-    for (int i = 0; i < n; ++i)
-        for (int j = 0; j < n; ++j)
-            corners.insert(corners.end(), {at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j),
-                                           at(i + 1, j + 1), at(i, j + 1)});
-    return Chunk::owning_doubles(dvec3(0), std::move(corners));
+/// Returns n x n quads, 2 reach wide.
+Chunk floor_of(int n, double reach, double height = 0) {
+    return test::Floor{dvec3(0, 0, height), dvec3(reach, 0, 0), dvec3(0, reach, 0)}.chunk(n);
 }
 
 struct Found {
@@ -34,11 +20,11 @@ struct Found {
     size_t portals;
 };
 
-/// Builds a scene of a grid of size 1 and these squares, and finds the far triangles.
-Found far_of(const std::vector<Square>& squares) {
+/// Builds a scene of a grid of size 1 and these floors, and finds the far triangles.
+template <class... Floors>
+Found far_of(Floors... floors) {
     Soup soup = test::closed_grid(24);
-    for (const Square& square : squares)
-        soup.chunks.push_back(chunk_of(square));
+    (soup.chunks.push_back(std::move(floors)), ...);
     const Result<BuiltScene> scene = build_scene(
         soup, {.leaf_triangles = 100},
         {.budget_bytes = 1 << 26, .batch_rays = 1024, .pool_bytes = 1 << 25}, {}, nullptr);
@@ -50,18 +36,18 @@ Found far_of(const std::vector<Square>& squares) {
 }
 
 TEST(FarTriangles, AreThoseOfALargeFloor) {
-    const Found found = far_of({{1, 1e6}});
+    const Found found = far_of(floor_of(1, 1e6));
     EXPECT_EQ(found.triangles, 2u);
     EXPECT_EQ(found.portals, 0u) << "all else shares a frame";
-    EXPECT_EQ(far_of({{2, 1e6}, {2, 1e6, 0.5}}).triangles, 16u);
+    EXPECT_EQ(far_of(floor_of(2, 1e6), floor_of(2, 1e6, 0.5)).triangles, 16u);
 }
 
 TEST(FarTriangles, AreFew) {
-    EXPECT_LE(far_of({{20, 1e6}}).triangles, 32u);
+    EXPECT_LE(far_of(floor_of(20, 1e6)).triangles, 32u);
 }
 
 TEST(FarTriangles, AreNoneWhereOneFrameSuitsAll) {
-    EXPECT_EQ(far_of({{1, 4}}).triangles, 0u);
+    EXPECT_EQ(far_of(floor_of(1, 4)).triangles, 0u);
 }
 
 } // namespace

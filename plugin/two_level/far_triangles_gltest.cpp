@@ -11,33 +11,15 @@
 namespace ovc {
 namespace {
 
+using test::Floor;
 using test::ok;
 
-/// A square of a plane, which reaches as far as `reach` to all sides of `through`.
-struct Floor {
-    dvec3 through;
-    dvec3 along;
-    dvec3 across;
-
-    Floor(test::Random& random, double reach)
-        : through(random.point(-0.5, 0.5)),
-          along(glm::normalize(random.point(-1, 1)) * reach),
-          across(glm::normalize(glm::cross(along, random.point(-1, 1))) * reach) {}
-
-    dvec3 at(double a, double b) const { return through + a * along + b * across; }
-
-    /// Returns it as n x n quads.
-    Chunk chunk(int n) const {
-        const auto corner = [&](int i, int j) { return at(2.0 * i / n - 1, 2.0 * j / n - 1); };
-        std::vector<dvec3> corners;
-        for (int i = 0; i < n; ++i)
-            for (int j = 0; j < n; ++j)
-                corners.insert(corners.end(),
-                               {corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j),
-                                corner(i + 1, j + 1), corner(i, j + 1)});
-        return Chunk::owning_doubles(dvec3(0), std::move(corners));
-    }
-};
+/// Returns a floor near 0, however it is turned, that reaches so far to all sides.
+Floor random_floor(test::Random& random, double reach) {
+    const dvec3 through = random.point(-0.5, 0.5);
+    const dvec3 along = glm::normalize(random.point(-1, 1)) * reach;
+    return {through, along, glm::normalize(glm::cross(along, random.point(-1, 1))) * reach};
+}
 
 /// Returns rays from around a mesh of size 1, at it and at the floor near it. Some begin on the
 /// floor, and some end close to it.
@@ -87,7 +69,7 @@ TEST_P(FarTrianglesGl, LetAFloorLeaveFewHitsInDoubt) {
     for (uint64_t seed = 0; seed < 4; ++seed) {
         SCOPED_TRACE(seed);
         test::Random random(seed);
-        const Floor floor(random, reach);
+        const Floor floor = random_floor(random, reach);
         Soup soup = test::closed_grid(24);
         soup.chunks.push_back(floor.chunk(1));
         const std::vector<Ray> rays = rays_near(floor, reach, 4000);
@@ -110,7 +92,7 @@ TEST_P(FarTrianglesGl, LetAFloorLeaveFewHitsInDoubt) {
 TEST_P(FarTrianglesGl, AreLeftToPagesWhereTheyAreManyOrPlaced) {
     const auto [reach, compute] = GetParam();
     test::Random random(11);
-    const Floor floor(random, reach);
+    const Floor floor = random_floor(random, reach);
     Soup soup = test::closed_grid(24);
     soup.chunks.push_back(floor.chunk(20));
     Chunk second = soup.chunks[1].instance();
@@ -153,7 +135,7 @@ TEST_P(FarTrianglesGl, AnswerRaysThatMeetOverlappingParts) {
         test::Random random(seed);
         Soup soup;
         soup.chunks.push_back(flat_boxes(random, 40 + 10 * int(seed % 8)));
-        soup.chunks.push_back(Floor(random, reach).chunk(1));
+        soup.chunks.push_back(random_floor(random, reach).chunk(1));
         std::vector<Ray> rays;
         for (int i = 0; i < 4000; ++i) {
             Ray ray{.org = random.point(-100, 100)};
