@@ -187,7 +187,8 @@ TransparentColor color_at(std::span<const Texture> textures, uint32_t number,
     case TextureKind::Pattern:
         break;
     }
-    return color_of_pattern(textures, texture, texture.on_uv ? moved_to_uv(point) : point);
+    return texture.on_uv ? color_of_pattern(textures, texture, moved_to_uv(point))
+                         : color_of_pattern(textures, texture, point);
 }
 
 double height_at(std::span<const Texture> textures, uint32_t number, const TexturePoint& point) {

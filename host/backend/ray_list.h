@@ -27,6 +27,12 @@ struct RayList {
         purposes.push_back(purpose);
     }
 
+    void reserve(size_t count) {
+        rays.reserve(count);
+        skip.reserve(count);
+        purposes.reserve(count);
+    }
+
     void resize(size_t count) {
         rays.resize(count);
         skip.resize(count);

@@ -85,6 +85,7 @@ CameraRays::CameraRays(const Pinhole& pinhole, const Film& film, std::span<const
       filter_(sampling_.filter),
       points_(points) {
     assert(points.size() == uint64_t(film.width()) * film.height());
+    order_.reserve(points.size());
     for (uint32_t pixel = 0; pixel < points.size(); ++pixel)
         if (!film.done(pixel))
             order_.push_back(pixel);

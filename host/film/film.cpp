@@ -15,10 +15,10 @@ static constexpr double kOne = 0x1p28;
 /// Brighter light is clamped to this, so that a million such samples stay below 2^63.
 static constexpr float kBrightest = 32768;
 
-/// Returns the light in units of 2^-28; NaN is dark.
+/// Returns the light in units of 2^-28, rounded as llround() does, which is a call; NaN is dark.
 static int64_t fixed(float light) {
-    return light == light ? std::llround(double(std::clamp(light, -kBrightest, kBrightest)) * kOne)
-                          : 0;
+    const double units = double(std::clamp(light, -kBrightest, kBrightest)) * kOne;
+    return light == light ? int64_t(units + std::copysign(0.5, units)) : 0;
 }
 
 /// Returns how many pieces of 2^bits pixels cover so many.
@@ -37,8 +37,7 @@ Film::Film(uint32_t width, uint32_t height, uint32_t samples)
     assert(width > 0 && height > 0 && samples > 0);
 }
 
-void Film::add(uint32_t pixel, const vec3& light) {
-    const Place at = place(pixel);
+void Film::add(const Place& at, const vec3& light) {
     Sums& sums = at.tile.sums[at.pixel];
     for (int channel = 0; channel < 3; ++channel)
         if (light[channel] != 0)

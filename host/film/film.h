@@ -31,21 +31,23 @@ public:
 
     /// Adds light that one of the pixel's camera rays gets; the picture has the mean of its camera
     /// rays. NaN counts as 0.
-    void add(uint32_t pixel, const vec3& light);
+    void add(uint32_t pixel, const vec3& light) { add(place(pixel), light); }
 
     /// Counts more rays of the pixel as under way. Its camera rays are counted from the start.
     void open(uint32_t pixel, uint32_t rays = 1) {
-        answered(pixel).fetch_sub(rays, std::memory_order_relaxed);
+        answered(place(pixel)).fetch_sub(rays, std::memory_order_relaxed);
     }
     /// Counts one ray of the pixel as answered. Open the rays that it spawned before.
-    void close(uint32_t pixel) {
-        assert(!done(pixel));
-        if (answered(pixel).fetch_add(1, std::memory_order_acq_rel) + 1 == samples_)
-            done_.fetch_add(1, std::memory_order_relaxed);
+    void close(uint32_t pixel) { close(place(pixel)); }
+    /// Adds the light that one ray of the pixel has found, and counts it as answered.
+    void answer(uint32_t pixel, const vec3& light) {
+        const Place at = place(pixel);
+        add(at, light);
+        close(at);
     }
 
     bool done(uint32_t pixel) const {
-        return answered(pixel).load(std::memory_order_acquire) == samples_;
+        return answered(place(pixel)).load(std::memory_order_acquire) == samples_;
     }
     uint64_t pixels_done() const { return done_.load(std::memory_order_relaxed); }
 
@@ -91,13 +93,18 @@ private:
         uint32_t pixel; // of the tile
     };
     Place place(uint32_t pixel) const;
+    void add(const Place& at, const vec3& light);
+    void close(const Place& at) {
+        assert(answered(at).load() != samples_);
+        if (answered(at).fetch_add(1, std::memory_order_acq_rel) + 1 == samples_)
+            done_.fetch_add(1, std::memory_order_relaxed);
+    }
     Tile& tile_of(uint32_t number) const {
         assert(number < tile_count());
         return static_cast<Tile*>(tiles_.get())[number];
     }
 
-    std::atomic_ref<uint32_t> answered(uint32_t pixel) const {
-        const Place at = place(pixel);
+    static std::atomic_ref<uint32_t> answered(const Place& at) {
         return std::atomic_ref(at.tile.answered[at.pixel]);
     }
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cassert>
 #include <cmath>
 #include <unordered_map>
@@ -26,22 +27,49 @@ dvec2 chance(uint64_t a, uint64_t b) {
     return dvec2(double(bits >> 32), double(bits & 0xffffffffu)) * 0x1p-32 - 0.5;
 }
 
-/// A color, and how bright it looks by POV-Ray's Antialias_Gamma, 2.5.
-struct Seen {
-    vec3 light{0}, looks{0};
+/// How bright light looks, by POV-Ray's Antialias_Gamma, 2.5. Each sample asks for three powers:
+/// those of common light lie in a table, between whose entries the error is below 2e-6 of them.
+class Brightness {
+public:
+    /// gamma: of the scene.
+    explicit Brightness(double gamma) : gamma_(gamma) {
+        for (uint32_t i = 0; i <= kEntries; ++i)
+            table_[i] = power(std::bit_cast<float>(kFirst + (i << kShareBits)));
+    }
+
+    float of(float light) const {
+        const uint32_t bits = std::bit_cast<uint32_t>(light) - kFirst;
+        const uint32_t entry = bits >> kShareBits;
+        if (entry >= kEntries) // negative light, too
+            return power(light);
+        const float share = float(bits & ((1u << kShareBits) - 1)) / float(1u << kShareBits);
+        return table_[entry] + share * (table_[entry + 1] - table_[entry]);
+    }
+
+private:
+    static constexpr uint32_t kFirst = std::bit_cast<uint32_t>(0x1p-12f);
+    static constexpr uint32_t kShareBits = 16; // the low bits of a float's mantissa
+    static constexpr uint32_t kEntries = (std::bit_cast<uint32_t>(16.0f) - kFirst) >> kShareBits;
+
+    float power(float light) const {
+        if (!(light > 0))
+            return 0;
+        return gamma_ == kSrgbGamma ? std::pow(linear_light(light, gamma_), 1 / 2.5f)
+                                    : std::pow(light, float(gamma_ / 2.5));
+    }
+
+    const double gamma_;
+    std::array<float, kEntries + 1> table_;
 };
 
-Seen seen(const vec3& light, double gamma) {
-    Seen color{light};
-    for (int i = 0; i < 3; ++i)
-        color.looks[i] = gamma == kSrgbGamma
-                             ? std::pow(linear_light(light[i], gamma), 1 / 2.5f)
-                             : std::pow(std::max(light[i], 0.0f), float(gamma / 2.5));
-    return color;
+/// Returns how bright the components of a color look.
+vec3 looks_of(const vec3& light, const Brightness& brightness) {
+    return {brightness.of(light.x), brightness.of(light.y), brightness.of(light.z)};
 }
 
-bool differ(const Seen& a, const Seen& b, float threshold) {
-    const vec3 off = glm::abs(a.looks - b.looks);
+/// Compares colors by how bright they look.
+bool differ(const vec3& a, const vec3& b, float threshold) {
+    const vec3 off = glm::abs(a - b);
     return off.x + off.y + off.z >= threshold;
 }
 
@@ -51,10 +79,11 @@ public:
                   const TracePoints& trace)
         : size_(size),
           how_(how),
-          gamma_(gamma),
+          brightness_(gamma),
           trace_(trace),
           order_(pixel_order(size.width, size.height)),
           colors_(order_.size()),
+          looks_(order_.size()),
           refined_(order_.size()) {}
 
     std::optional<std::vector<vec3>> run() {
@@ -65,27 +94,23 @@ public:
         for (std::vector<uint32_t> pixels = rough(); !pixels.empty(); pixels = rough())
             if (!refine(pixels))
                 return std::nullopt;
-        std::vector<vec3> light(colors_.size());
-        std::transform(colors_.begin(), colors_.end(), light.begin(),
-                       [](const Seen& color) { return color.light; });
-        return light;
+        return std::move(colors_);
     }
 
 private:
     dvec2 corner(uint32_t pixel) const { return dvec2(pixel % size_.width, pixel / size_.width); }
 
     bool sample_middles() {
-        std::vector<dvec2> points;
-        std::vector<vec3> light;
-        for (size_t first = 0; first < order_.size(); first += points.size()) {
-            points.resize(std::min(kMaxPoints, order_.size() - first));
-            light.resize(points.size());
-            for (size_t i = 0; i < points.size(); ++i)
-                points[i] = corner(order_[first + i]) + 0.5;
-            if (!trace_(points, light))
+        for (size_t first = 0; first < order_.size(); first += points_.size()) {
+            points_.resize(std::min(kMaxPoints, order_.size() - first));
+            for (size_t i = 0; i < points_.size(); ++i)
+                points_[i] = corner(order_[first + i]) + 0.5;
+            if (!trace())
                 return false;
-            for (size_t i = 0; i < points.size(); ++i)
-                colors_[order_[first + i]] = seen(light[i], gamma_);
+            parallel_for(points_.size(), kPixelGrain, [&](size_t from, size_t to) {
+                for (size_t i = from; i < to; ++i)
+                    set(order_[first + i], light_[i]);
+            });
         }
         return true;
     }
@@ -107,7 +132,7 @@ private:
     bool differs_from_neighbour(size_t i) const {
         const size_t w = size_.width, x = i % w;
         const auto differs = [&](size_t other) {
-            return differ(colors_[i], colors_[other], how_.threshold);
+            return differ(looks_[i], looks_[other], how_.threshold);
         };
         return (x > 0 && differs(i - 1)) || (x + 1 < w && differs(i + 1)) ||
                (i >= w && differs(i - w)) || (i + w < colors_.size() && differs(i + w));
@@ -116,44 +141,55 @@ private:
     /// Adds depth x depth samples to each of the pixels.
     bool refine(const std::vector<uint32_t>& pixels) {
         const size_t side = how_.depth, samples = side * side;
-        std::vector<dvec2> points;
-        std::vector<vec3> light;
         const size_t pixels_at_once = std::max<size_t>(kMaxPoints / samples, 1);
         for (size_t first = 0; first < pixels.size(); first += pixels_at_once) {
             const size_t count = std::min(pixels_at_once, pixels.size() - first);
-            points.resize(count * samples);
-            light.resize(points.size());
-            for (size_t i = 0; i < points.size(); ++i) {
+            points_.resize(count * samples);
+            for (size_t i = 0; i < points_.size(); ++i) {
                 const uint32_t pixel = pixels[first + i / samples];
                 const size_t sample = i % samples;
                 const dvec2 off = 0.5 + double(how_.jitter) * chance(pixel, sample);
-                points[i] =
+                points_[i] =
                     corner(pixel) +
                     (dvec2(double(sample % side), double(sample / side)) + off) / double(side);
             }
-            if (!trace_(points, light))
+            if (!trace())
                 return false;
-            for (size_t i = 0; i < count; ++i)
-                add(pixels[first + i], std::span(light).subspan(i * samples, samples));
+            parallel_for(count, kPixelGrain / samples, [&](size_t from, size_t to) {
+                for (size_t i = from; i < to; ++i)
+                    add(pixels[first + i], std::span(light_).subspan(i * samples, samples));
+            });
         }
         return true;
     }
 
     void add(uint32_t pixel, std::span<const vec3> light) {
-        vec3 sum = colors_[pixel].light;
+        vec3 sum = colors_[pixel];
         for (const vec3& more : light)
             sum += more;
-        colors_[pixel] = seen(sum / float(light.size() + 1), gamma_);
+        set(pixel, sum / float(light.size() + 1));
         refined_[pixel] = true;
+    }
+
+    bool trace() {
+        light_.resize(points_.size());
+        return trace_(points_, light_);
+    }
+
+    void set(uint32_t pixel, const vec3& light) {
+        colors_[pixel] = light;
+        looks_[pixel] = looks_of(light, brightness_);
     }
 
     const ImageSize size_;
     const Antialias how_;
-    const double gamma_; // of the scene
+    const Brightness brightness_;
     const TracePoints& trace_;
     const std::vector<uint32_t> order_; // in which pixels are traced
-    std::vector<Seen> colors_;
+    std::vector<vec3> colors_, looks_;  // of the pixels
     std::vector<uint8_t> refined_;
+    std::vector<dvec2> points_; // of one call, whose memory the next takes
+    std::vector<vec3> light_;
 };
 
 /// A square with a sample at each corner, on a grid of 2^(depth - 1) cells a pixel.
@@ -162,12 +198,17 @@ struct Cell {
     uint32_t size;
 };
 
+/// The light of a sample, and how bright it looks.
+struct Seen {
+    vec3 light{0}, looks{0};
+};
+
 class Subdivision {
 public:
     Subdivision(const ImageSize& size, const Antialias& how, double gamma, const TracePoints& trace)
         : size_(size),
           how_(how),
-          gamma_(gamma),
+          brightness_(gamma),
           trace_(trace),
           cells_(1u << (how.depth - 1)),
           columns_(uint64_t(size.width) * cells_ + 1) {}
@@ -229,7 +270,7 @@ private:
             if (!trace_(points, light))
                 return false;
             for (size_t i = 0; i < points.size(); ++i)
-                samples_[wanted_[first + i]] = seen(light[i], gamma_);
+                samples_[wanted_[first + i]] = {light[i], looks_of(light[i], brightness_)};
         }
         wanted_.clear();
         return true;
@@ -246,7 +287,7 @@ private:
             return false;
         const std::array<Seen, 4> c = corners(cell);
         const auto apart = [&](int i, int k) {
-            return differ(c[size_t(i)], c[size_t(k)], how_.threshold);
+            return differ(c[size_t(i)].looks, c[size_t(k)].looks, how_.threshold);
         };
         return apart(0, 1) || apart(2, 3) || apart(0, 2) || apart(1, 3) || apart(0, 3) ||
                apart(1, 2);
@@ -272,7 +313,7 @@ private:
 
     const ImageSize size_;
     const Antialias how_;
-    const double gamma_; // of the scene
+    const Brightness brightness_;
     const TracePoints& trace_;
     const uint32_t cells_; // per pixel, along each side
     const uint64_t columns_;

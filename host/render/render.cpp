@@ -2,6 +2,7 @@
 // Chooses the integrator and the form of rendering, runs them, and measures the times.
 #include "host/render/render.h"
 
+#include "core/system/parallel.h"
 #include "core/system/stopwatch.h"
 #include "host/camera/camera_rays.h"
 #include "host/ranks/shared_film.h"
@@ -19,6 +20,8 @@
 #include <memory>
 
 namespace ovc {
+
+static constexpr size_t kPixelGrain = 4096; // pixels a task
 
 /// Makes another seed, whose random numbers have nothing to do with those of the first.
 static constexpr uint64_t kOtherRandomNumbers = 0x9e3779b97f4a7c15u;
@@ -109,10 +112,11 @@ public:
             size, how, gamma, [&](auto points, auto light) { return pass(points, light); });
         if (error_)
             return *error_;
-        for (uint32_t pixel = 0; colors && pixel < colors->size(); ++pixel) {
-            film.add(pixel, (*colors)[pixel]);
-            film.close(pixel);
-        }
+        if (colors)
+            parallel_for(colors->size(), kPixelGrain, [&](size_t first, size_t last) {
+                for (size_t pixel = first; pixel < last; ++pixel)
+                    film.answer(uint32_t(pixel), (*colors)[pixel]);
+            });
         report_.complete = colors.has_value();
         return report_;
     }
@@ -134,9 +138,10 @@ private:
             return false;
         }
         report_ += *done;
-        const Image image = film.image();
-        for (size_t i = 0; i < light.size(); ++i)
-            light[i] = vec3(image.pixels[i]);
+        parallel_for(light.size(), kPixelGrain, [&](size_t first, size_t last) {
+            for (size_t i = first; i < last; ++i)
+                light[i] = film.done(uint32_t(i)) ? vec3(film.mean(uint32_t(i))) : vec3(0);
+        });
         return done->complete;
     }
 

@@ -90,7 +90,9 @@ public:
         : work_(work),
           integrator_(integrator),
           shading_(integrator, lights, film),
-          batch_rays_(batch_rays) {}
+          batch_rays_(batch_rays) {
+        spawned_.shadows.reserve(batch_rays);
+    }
 
     void run() {
         const Stopwatch watch;
@@ -99,6 +101,7 @@ public:
                 take_waiting();
                 if (!trace_paths() || !shade())
                     return;
+                reuse(now_, spawned_.paths);
             }
         work_.shaded_for(watch.seconds() - seconds_tracing_);
     }
@@ -132,6 +135,7 @@ private:
             while (!shadows_.empty())
                 if (!(integrator_.light_may_pass() ? pass() : arrive()))
                     return false;
+            reuse(shadows_, spawned_.shadows);
         }
         return true;
     }
@@ -183,6 +187,14 @@ private:
         const size_t few =
             waiting.size() > batch_rays_ ? std::max<size_t>(batch_rays_ / 8, 1) : waiting.size();
         waiting.move_tail(waiting.size() - few, now_);
+    }
+
+    /// Gives the memory of rays that are done to those that come next, if none has come yet.
+    template <class Purpose>
+    static void reuse(RayList<Purpose>& done, RayList<Purpose>& next) {
+        done.resize(0);
+        if (next.empty())
+            std::swap(done, next);
     }
 
     Work& work_;

@@ -62,6 +62,10 @@ static double highlight(const SurfacePoint& surface, const dvec3& towards) {
     return sum;
 }
 
+float brilliant(const Finish& finish, double cosine) {
+    return float(finish.brilliance == 1 ? cosine : std::pow(cosine, double(finish.brilliance)));
+}
+
 /// Hash: Steele, Lea and Flood 2014, SplitMix64.
 float random_share(const dvec3& at) {
     uint64_t bits = 0;
@@ -100,7 +104,7 @@ vec3 finish_light(const SurfacePoint& surface, const dvec3& towards, const vec3&
     const float grain = finish.crand > 0 ? finish.crand * random_share(surface.position) : 0;
     vec3 light = surface.color *
                  (surface.opacity *
-                  (finish.diffuse * float(std::pow(cosine, double(finish.brilliance))) - grain));
+                  (finish.diffuse * brilliant(finish, cosine) - grain));
     if (highlights)
         light += surface.maps.gloss() * metallic_tint(surface, finish.metallic, cosine) *
                  float(highlight(surface, towards));

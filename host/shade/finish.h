@@ -15,6 +15,9 @@ vec3 finish_light(const SurfacePoint& surface, const dvec3& towards, const vec3&
 /// As branches(); surface.material has a finish.
 Branches finish_branches(const SurfacePoint& surface, bool total);
 
+/// Returns the share of diffuse light that arrives at an angle of that cosine, above 0.
+float brilliant(const Finish& finish, double cosine);
+
 /// Returns a number from 0 to 1 that depends on the place alone.
 float random_share(const dvec3& at);
 

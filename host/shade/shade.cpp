@@ -95,12 +95,22 @@ static dvec3 facing(const dvec3& normal, const dvec3& towards) {
     return glm::dot(normal, towards) < 0 ? -normal : normal;
 }
 
+static double sum_of_magnitudes(const dvec3& v) {
+    return std::abs(v.x) + std::abs(v.y) + std::abs(v.z);
+}
+
 /// Returns the hit's weights of the corners, moved inwards where it is too close to an edge.
 /// doubled_area: of the triangle, above 0.
 static dvec3 weights_off_edges(const Hit& hit, const Triangle& t, double doubled_area,
                                double offset) {
     const dvec3 weights{1 - hit.u - hit.v, hit.u, hit.v};
-    const dvec3 edges{glm::length(t[2] - t[1]), glm::length(t[0] - t[2]), glm::length(t[1] - t[0])};
+    const dvec3 ab = t[1] - t[0], ac = t[2] - t[0];
+    // No edge is longer than these, and few hits are so near to one that more is to be known.
+    const double no_shorter = sum_of_magnitudes(ab) + sum_of_magnitudes(ac);
+    if (-max_component(-weights) >=
+        std::max(kEdgeShare, kMinEdgeOffsets * offset * no_shorter / doubled_area))
+        return weights;
+    const dvec3 edges{glm::length(t[2] - t[1]), glm::length(ac), glm::length(ab)};
     const dvec3 heights = doubled_area / edges;
     const dvec3 wanted = glm::clamp(dvec3(kEdgeShare), kMinEdgeOffsets * offset / heights,
                                     kMaxEdgeOffsets * offset / heights);
@@ -265,8 +275,7 @@ static vec3 light_from_behind(const SurfacePoint& surface, const dvec3& towards)
     if (!finish || finish->diffuse_back == 0 || !(cosine > 0) ||
         glm::dot(surface.geometric_normal, towards) >= 0)
         return vec3(0);
-    return surface.color * (surface.opacity * finish->diffuse_back *
-                            float(std::pow(cosine, double(finish->brilliance))));
+    return surface.color * (surface.opacity * finish->diffuse_back * brilliant(*finish, cosine));
 }
 
 vec3 direct_light(const Light& light, const SurfacePoint& surface) {

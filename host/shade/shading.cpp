@@ -5,6 +5,7 @@
 #include "core/system/parallel.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 
 namespace ovc {
@@ -63,19 +64,30 @@ void Shading::shade_block(const RayList<Path>& paths, std::span<const Hit> hits,
                       spawned);
     for (const Path& path : spawned.paths.purposes)
         film_.open(path.pixel);
-    for (const Shadow& shadow : spawned.shadows.purposes)
-        film_.open(shadow.pixel);
-    for (const Path& path : part(paths.purposes))
-        film_.close(path.pixel);
+    const std::span<const Path> answered = part(paths.purposes);
+    const std::vector<Shadow>& shadows = spawned.shadows.purposes;
+    // One that closes and one that opens leave the count as it is.
+    std::array<uint32_t, kBlock> closed;
+    size_t next = 0, closes = 0;
+    for (const Path& path : answered)
+        if (next < shadows.size() && shadows[next].pixel == path.pixel)
+            ++next;
+        else
+            closed[closes++] = path.pixel;
+    for (; next < shadows.size(); ++next)
+        film_.open(shadows[next].pixel);
+    for (size_t i = 0; i < closes; ++i)
+        film_.close(closed[i]);
 }
 
 void Shading::arrive(std::span<const Shadow> purposes, std::span<const uint8_t> occluded) {
     assert(occluded.size() == purposes.size());
     parallel_for(purposes.size(), kShadingGrain, [&](size_t first, size_t last) {
         for (size_t i = first; i < last; ++i) {
-            if (!occluded[i])
-                film_.add(purposes[i].pixel, purposes[i].arriving);
-            film_.close(purposes[i].pixel);
+            if (occluded[i])
+                film_.close(purposes[i].pixel);
+            else
+                film_.answer(purposes[i].pixel, purposes[i].arriving);
         }
     });
 }
@@ -91,8 +103,7 @@ void Shading::pass(RayList<Shadow>& shadows, std::span<const Hit> hits) {
                 shadows.skip[i] = hits[i].id;
                 continue;
             }
-            film_.add(shadow.pixel, shadow.arriving);
-            film_.close(shadow.pixel);
+            film_.answer(shadow.pixel, shadow.arriving);
         }
     });
     size_t kept = 0;

@@ -14,6 +14,8 @@ namespace {
 /// from outside the first row is the lowest; seen from above columns run counterclockwise.
 template <class At>
 void add_grid(int columns, int rows, At&& at, Facets& out) {
+    if (out.corners.empty())
+        out.corners.reserve(6 * size_t(columns) * size_t(rows));
     std::vector<Corner> below, above;
     for (int row = 0; row <= rows; ++row) {
         above.clear();
