@@ -115,8 +115,19 @@ float mean_of(const TransparentColor& color) {
     return (color.rgb.x + color.rgb.y + color.rgb.z) / 3;
 }
 
+/// Returns the stop that a discrete pattern chooses.
+const TextureStop& stop_at(const Texture& texture, const dvec3& unmoved) {
+    const dvec3 at = moved(texture.pattern, unmoved);
+    const double value = is_in_reach(at) ? discrete_value(texture.pattern, at) : 0;
+    return texture.stops[size_t(value) % texture.stops.size()];
+}
+
 TransparentColor color_of_pattern(std::span<const Texture> textures, const Texture& texture,
                                   const TexturePoint& unmoved) {
+    // Most have plain colors, for which the rest of the place does not count.
+    if (is_discrete(texture.pattern.kind))
+        if (const TextureStop& stop = stop_at(texture, unmoved.at); stop.texture == kNoTexture)
+            return stop.color;
     const PatternPlace place = evaluate(textures, texture.pattern, unmoved);
     const TexturePoint& point = place.at;
     TransparentColor sum;

@@ -192,12 +192,13 @@ struct PlacedTexture {
         return {glm::dot(to_texture[0], p), glm::dot(to_texture[1], p), glm::dot(to_texture[2], p)};
     }
     /// Returns a point of the world as one of the texture's space.
-    TexturePoint at(TexturePoint world) const {
-        for (dvec3& side : world.sides)
+    TexturePoint at(const TexturePoint& world) const {
+        TexturePoint there = world;
+        for (dvec3& side : there.sides)
             side = {glm::dot(dvec3(to_texture[0]), side), glm::dot(dvec3(to_texture[1]), side),
                     glm::dot(dvec3(to_texture[2]), side)};
-        world.at = at(world.at);
-        return world;
+        there.at = at(world.at);
+        return there;
     }
     bool operator==(const PlacedTexture&) const = default;
 };

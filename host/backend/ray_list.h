@@ -7,16 +7,34 @@
 #include <algorithm>
 #include <cassert>
 #include <cstddef>
+#include <memory>
 #include <utility>
 #include <vector>
 
 namespace ovc {
 
+/// Lets resize() of a vector leave the memory of new elements as it is; each is written next.
+template <class T>
+struct Unwritten : std::allocator<T> {
+    template <class U>
+    struct rebind {
+        using other = Unwritten<U>;
+    };
+    void construct(T*) noexcept {}
+    template <class... From>
+    void construct(T* at, From&&... from) {
+        std::construct_at(at, std::forward<From>(from)...);
+    }
+};
+
+template <class T>
+using UnwrittenVector = std::vector<T, Unwritten<T>>;
+
 template <class Purpose>
 struct RayList {
-    std::vector<Ray> rays;
-    std::vector<TriangleId> skip; // the triangle that each ray starts on, and does not see
-    std::vector<Purpose> purposes;
+    UnwrittenVector<Ray> rays;
+    UnwrittenVector<TriangleId> skip; // the triangle that each ray starts on, and does not see
+    UnwrittenVector<Purpose> purposes;
 
     size_t size() const { return rays.size(); }
     bool empty() const { return rays.empty(); }

@@ -68,7 +68,7 @@ vec3 looks_of(const vec3& light, const Brightness& brightness) {
 }
 
 /// Compares colors by how bright they look.
-bool differ(const vec3& a, const vec3& b, float threshold) {
+bool looks_differ(const vec3& a, const vec3& b, float threshold) {
     const vec3 off = glm::abs(a - b);
     return off.x + off.y + off.z >= threshold;
 }
@@ -91,7 +91,7 @@ public:
             return std::nullopt;
         // A refined pixel may still differ from a neighbour that is not refined. POV-Ray refines
         // that one in the same round, we do so in the next.
-        for (std::vector<uint32_t> pixels = rough(); !pixels.empty(); pixels = rough())
+        for (std::vector<uint32_t> pixels = rough(); !pixels.empty(); pixels = rough_beside(pixels))
             if (!refine(pixels))
                 return std::nullopt;
         return std::move(colors_);
@@ -115,27 +115,51 @@ private:
         return true;
     }
 
-    /// Returns the pixels of one sample that differ from a neighbour, in the order of tracing.
+    /// Returns the pixels that differ from a neighbour, in the order of tracing.
     std::vector<uint32_t> rough() const {
-        std::vector<uint8_t> is_rough(colors_.size());
-        parallel_for(colors_.size(), kPixelGrain, [&](size_t first, size_t last) {
+        // Tasks write the rows of others in no case: a pixel knows of those at its right and below.
+        enum : uint8_t { kRight = 1, kBelow = 2 };
+        const size_t w = size_.width, count = colors_.size();
+        std::vector<uint8_t> differs(count);
+        parallel_for(count, kPixelGrain, [&](size_t first, size_t last) {
             for (size_t i = first; i < last; ++i)
-                is_rough[i] = !refined_[i] && differs_from_neighbour(i);
+                differs[i] = uint8_t((i % w + 1 < w && differ(i, i + 1) ? kRight : 0) |
+                                     (i + w < count && differ(i, i + w) ? kBelow : 0));
         });
         std::vector<uint32_t> pixels;
-        for (const uint32_t pixel : order_)
-            if (is_rough[pixel])
-                pixels.push_back(pixel);
+        for (const uint32_t i : order_)
+            if (differs[i] || (i % w > 0 && differs[i - 1] & kRight) ||
+                (i >= w && differs[i - w] & kBelow))
+                pixels.push_back(i);
         return pixels;
     }
 
-    bool differs_from_neighbour(size_t i) const {
-        const size_t w = size_.width, x = i % w;
-        const auto differs = [&](size_t other) {
-            return differ(looks_[i], looks_[other], how_.threshold);
+    /// Returns the pixels of one sample that differ from one of these, beside it.
+    std::vector<uint32_t> rough_beside(const std::vector<uint32_t>& refined) const {
+        const size_t w = size_.width;
+        std::vector<uint32_t> pixels;
+        const auto look_at = [&](size_t i, size_t other) {
+            if (!refined_[other] && differ(i, other))
+                pixels.push_back(uint32_t(other));
         };
-        return (x > 0 && differs(i - 1)) || (x + 1 < w && differs(i + 1)) ||
-               (i >= w && differs(i - w)) || (i + w < colors_.size() && differs(i + w));
+        for (const size_t i : refined) {
+            if (i % w > 0)
+                look_at(i, i - 1);
+            if (i % w + 1 < w)
+                look_at(i, i + 1);
+            if (i >= w)
+                look_at(i, i - w);
+            if (i + w < colors_.size())
+                look_at(i, i + w);
+        }
+        std::ranges::sort(pixels);
+        const auto twice = std::ranges::unique(pixels);
+        pixels.erase(twice.begin(), twice.end());
+        return pixels;
+    }
+
+    bool differ(size_t i, size_t other) const {
+        return looks_differ(looks_[i], looks_[other], how_.threshold);
     }
 
     /// Adds depth x depth samples to each of the pixels.
@@ -287,7 +311,7 @@ private:
             return false;
         const std::array<Seen, 4> c = corners(cell);
         const auto apart = [&](int i, int k) {
-            return differ(c[size_t(i)].looks, c[size_t(k)].looks, how_.threshold);
+            return looks_differ(c[size_t(i)].looks, c[size_t(k)].looks, how_.threshold);
         };
         return apart(0, 1) || apart(2, 3) || apart(0, 2) || apart(1, 3) || apart(0, 3) ||
                apart(1, 2);

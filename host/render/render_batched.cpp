@@ -206,8 +206,8 @@ private:
     Spawned spawned_;         // rays that wait, the deepest last
     RayList<Path> now_;       // rays that are being traced
     RayList<Shadow> shadows_; // likewise
-    std::vector<Hit> hits_;
-    std::vector<Hit> shadow_hits_;
+    UnwrittenVector<Hit> hits_;
+    UnwrittenVector<Hit> shadow_hits_;
     std::vector<uint8_t> occluded_;
     std::vector<uint32_t> masks_;
 };

@@ -57,7 +57,7 @@ public:
         take(tokens, rays.purposes);
     }
     /// The same of their purposes alone.
-    void take(std::span<const uint64_t> tokens, std::vector<Purpose>& purposes) {
+    void take(std::span<const uint64_t> tokens, UnwrittenVector<Purpose>& purposes) {
         purposes.resize(tokens.size());
         parallel_for(tokens.size(), kCopyGrain, [&](size_t first, size_t last) {
             for (size_t i = first; i < last; ++i)

@@ -63,6 +63,7 @@ PathTracer::PathTracer(const Scene& scene, const vec3& up, const PathTracerOptio
       options_(options),
       lights_(scene, up),
       unexposed_(1 / scene.exposure),
+      needs_cones_(needs_cones(scene)),
       light_may_pass_(light_passes(scene, lights_.has_lights())) {
     assert(options.max_depth <= UINT16_MAX); // Path::depth counts to it
 }
@@ -82,7 +83,7 @@ void PathTracer::shade(std::span<const Ray> rays, std::span<const Path> paths,
 
 void PathTracer::meet(const Ray& ray, const Path& path, const Hit& hit, Film& film, Sides& sides,
                       Spawned& spawned) const {
-    const SurfacePoint surface = surface_point(scene_, ray, hit, path.cone);
+    const SurfacePoint surface = surface_point(scene_, ray, hit, needs_cones_ ? path.cone : Cone());
     const double distance = double(path.behind) + hit.t * glm::length(ray.dir);
     const Met met{ray, path, hit, distance, surface, Bsdf(surface)};
     film.add(path.pixel, clamped(path, path.weight * unexposed_ * seen_emission(met)));

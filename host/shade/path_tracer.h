@@ -58,6 +58,7 @@ private:
     const PathTracerOptions options_;
     const LightSampler lights_;
     const float unexposed_; // converts the scene's light to the file's
+    const bool needs_cones_;
     const bool light_may_pass_;
 };
 

@@ -128,6 +128,17 @@ static uint32_t side_of(const Scene& scene, uint32_t material, bool from_outside
     return inside == kNone ? material : inside;
 }
 
+bool needs_cones(const Scene& scene) {
+    return std::ranges::any_of(scene.textures,
+                               [](const Texture& texture) {
+                                   return texture.kind == TextureKind::Image ||
+                                          texture.pattern.kind == Pattern::Kind::Perlin;
+                               }) ||
+           std::ranges::any_of(scene.materials, [](const Material& material) {
+               return material.normal_map.has_value();
+           });
+}
+
 SurfacePoint surface_point(const Scene& scene, const Ray& ray, const Hit& hit, const Cone& cone) {
     assert(hit.is_hit() && hit.id.mesh < scene.meshes.size());
     const MeshInfo& mesh = scene.meshes[hit.id.mesh];

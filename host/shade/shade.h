@@ -54,6 +54,9 @@ struct Coat {
     vec3 weight;
 };
 
+/// Returns whether some texture or normal map is seen as a mean over the cones of rays.
+bool needs_cones(const Scene& scene);
+
 /// Returns the point where a ray hit; hit: no miss. Both positions lie off the triangle by far less
 /// than float can tell but more than double errs, so that a second triangle in the same place is
 /// neither a shadow nor a second surface. Near an edge they are also moved into the triangle, since

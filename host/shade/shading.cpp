@@ -65,7 +65,7 @@ void Shading::shade_block(const RayList<Path>& paths, std::span<const Hit> hits,
     for (const Path& path : spawned.paths.purposes)
         film_.open(path.pixel);
     const std::span<const Path> answered = part(paths.purposes);
-    const std::vector<Shadow>& shadows = spawned.shadows.purposes;
+    const std::span<const Shadow> shadows = spawned.shadows.purposes;
     // One that closes and one that opens leave the count as it is.
     std::array<uint32_t, kBlock> closed;
     size_t next = 0, closes = 0;

@@ -17,6 +17,13 @@ namespace ovc {
 
 /// A surface that a path has met, and the pixel's share of its own color.
 struct Whitted::Met {
+    Met(const Scene& scene, const Ray& ray, const Path& path, const Hit& hit, const Cone& cone)
+        : surface(surface_point(scene, ray, hit, cone)),
+          id(hit.id),
+          pixel(path.pixel),
+          sample(path.sample),
+          weight(path.weight) {}
+
     SurfacePoint surface;
     TriangleId id;
     uint32_t pixel;
@@ -140,6 +147,7 @@ Whitted::Whitted(const Scene& scene, const vec3& up, uint32_t max_depth, bool sh
       bounced_(bounced),
       light_stride_(light_stride),
       light_may_pass_(lets_light_through(scene)),
+      needs_cones_(needs_cones(scene)),
       has_media_(media && has_media(scene)),
       air_(pointers_to(scene.background.media)),
       media_(1),
@@ -178,7 +186,9 @@ void Whitted::shade(std::span<const Ray> rays, std::span<const Path> paths,
             film.add(path.pixel, path.weight * background_color(scene_, up_, rays[i].dir));
             continue;
         }
-        const Met& met = all.emplace_back(meet(rays[i], path, hits[i], spawned));
+        Met& met =
+            all.emplace_back(scene_, rays[i], path, hits[i], needs_cones_ ? path.cone : Cone());
+        follow(rays[i], path, hits[i], met, spawned);
         film.add(met.pixel, met.weight * ambient_light(scene_.background, up_, met.surface));
         if (bounced_ && scene_.radiosity)
             film.add(met.pixel, met.weight * scene_.radiosity->brightness *
@@ -323,10 +333,8 @@ Containers Whitted::inside_behind(const Path& path, const Met& met, bool goes_th
 
 /// Divides the path's weight among the surface's own color and the two rays that may leave it. The
 /// color keeps the weight of a ray that is not followed.
-Whitted::Met Whitted::meet(const Ray& ray, const Path& path, const Hit& hit,
-                           Spawned& spawned) const {
-    Met met{surface_point(scene_, ray, hit, path.cone), hit.id, path.pixel, path.sample,
-            path.weight};
+void Whitted::follow(const Ray& ray, const Path& path, const Hit& hit, Met& met,
+                     Spawned& spawned) const {
     const Cone cone{path.cone.width_at(hit.t * glm::length(ray.dir)), path.cone.spread};
     const uint32_t material = scene_.meshes[hit.id.mesh].material;
     // What lies around the surface's solid, from where or to where a ray goes through it.
@@ -343,8 +351,7 @@ Whitted::Met Whitted::meet(const Ray& ray, const Path& path, const Hit& hit,
     const std::optional<Ray> refracted = clear ? refracted_ray(ray, met.surface) : std::nullopt;
     const bool total = clear && !refracted;
     const Branches parts = branches(met.surface, total);
-    const auto follow = [&](const vec3& share, float taken, RayKind kind, int deeper,
-                            auto&& child) {
+    const auto spawn = [&](const vec3& share, float taken, RayKind kind, int deeper, auto&& child) {
         const vec3 weight = arriving * share;
         if (path.depth >= max_depth_ || max_component(glm::abs(weight)) < kMinWeight)
             return;
@@ -359,13 +366,12 @@ Whitted::Met Whitted::meet(const Ray& ray, const Path& path, const Hit& hit,
                             /* scattered= */ false, weight, path.density, path.behind, cone,
                             inside_behind(path, met, kind == RayKind::Refraction), within});
     };
-    follow(parts.mirror, parts.taken_by_mirror, RayKind::Reflection, 1,
-           [&] { return mirror_ray(ray, met.surface); });
+    spawn(parts.mirror, parts.taken_by_mirror, RayKind::Reflection, 1,
+          [&] { return mirror_ray(ray, met.surface); });
     // A ray that goes straight on is no step deeper, as in POV-Ray: a line has only so many
     // surfaces.
-    follow(parts.through, parts.taken_by_through, RayKind::Refraction,
-           met.surface.material->ior == met.surface.ior_around ? 0 : 1, [&] { return *refracted; });
-    return met;
+    spawn(parts.through, parts.taken_by_through, RayKind::Refraction,
+          met.surface.material->ior == met.surface.ior_around ? 0 : 1, [&] { return *refracted; });
 }
 
 void Whitted::light_up(const Light& light, uint32_t number, const Met& met, Film& film,

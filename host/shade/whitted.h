@@ -57,7 +57,7 @@ private:
                  Film& film, Spawned& spawned) const;
     vec3 share_of_air(const Light& light, const Ray& ray) const;
     Containers inside_behind(const Path& path, const Met& met, bool goes_through) const;
-    Met meet(const Ray& ray, const Path& path, const Hit& hit, Spawned& spawned) const;
+    void follow(const Ray& ray, const Path& path, const Hit& hit, Met& met, Spawned& spawned) const;
     void light_up(const Light& light, uint32_t number, const Met& met, Film& film,
                   Spawned& spawned) const;
 
@@ -68,6 +68,7 @@ private:
     const BouncedLight* const bounced_;
     const uint32_t light_stride_;
     const bool light_may_pass_;
+    const bool needs_cones_;
     const bool has_media_;
     const std::vector<const Medium*> air_;          // the media outside of containers
     std::vector<std::vector<const Medium*>> media_; // by a container's number; none has 0
