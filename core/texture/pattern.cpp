@@ -115,19 +115,8 @@ float mean_of(const TransparentColor& color) {
     return (color.rgb.x + color.rgb.y + color.rgb.z) / 3;
 }
 
-/// Returns the stop that a discrete pattern chooses.
-const TextureStop& stop_at(const Texture& texture, const dvec3& unmoved) {
-    const dvec3 at = moved(texture.pattern, unmoved);
-    const double value = is_in_reach(at) ? discrete_value(texture.pattern, at) : 0;
-    return texture.stops[size_t(value) % texture.stops.size()];
-}
-
 TransparentColor color_of_pattern(std::span<const Texture> textures, const Texture& texture,
                                   const TexturePoint& unmoved) {
-    // Most have plain colors, for which the rest of the place does not count.
-    if (is_discrete(texture.pattern.kind))
-        if (const TextureStop& stop = stop_at(texture, unmoved.at); stop.texture == kNoTexture)
-            return stop.color;
     const PatternPlace place = evaluate(textures, texture.pattern, unmoved);
     const TexturePoint& point = place.at;
     TransparentColor sum;
@@ -200,6 +189,21 @@ TransparentColor color_at(std::span<const Texture> textures, uint32_t number,
     }
     return texture.on_uv ? color_of_pattern(textures, texture, moved_to_uv(point))
                          : color_of_pattern(textures, texture, point);
+}
+
+TransparentColor color_at(std::span<const Texture> textures, const PlacedTexture& placed,
+                          const TexturePoint& world) {
+    const Texture& texture = textures[placed.texture];
+    // The rest of a place does not count for the plain colors that most discrete patterns have.
+    if (texture.kind == TextureKind::Pattern && is_discrete(texture.pattern.kind) &&
+        !texture.on_uv) {
+        const dvec3 at = moved(texture.pattern, placed.at(world.at));
+        const double value = is_in_reach(at) ? discrete_value(texture.pattern, at) : 0;
+        const TextureStop& stop = texture.stops[size_t(value) % texture.stops.size()];
+        if (stop.texture == kNoTexture)
+            return stop.color;
+    }
+    return color_at(textures, placed.texture, placed.at(world));
 }
 
 double height_at(std::span<const Texture> textures, uint32_t number, const TexturePoint& point) {

@@ -32,6 +32,10 @@ double value_of_moved(std::span<const Texture> textures, const Pattern& pattern,
 TransparentColor color_at(std::span<const Texture> textures, uint32_t number,
                           const TexturePoint& point);
 
+/// Returns the color of a texture as it lies in the world, at a point of the world.
+TransparentColor color_at(std::span<const Texture> textures, const PlacedTexture& placed,
+                          const TexturePoint& world);
+
 /// Returns what varies in textures[number] as a number: the pattern's value, or the mean color.
 double value_at(std::span<const Texture> textures, uint32_t number, const TexturePoint& point);
 

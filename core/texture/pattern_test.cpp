@@ -283,6 +283,25 @@ TEST(Texture, MixesTheStopsOfItsMap) {
     EXPECT_EQ(color_at(textures, 1, dvec3(0.75, 0, 0)).rgb, vec3(8)); // the last of equal stops
 }
 
+TEST(Texture, ThatIsPlacedHasTheColorOfItsOwnSpace) {
+    std::vector<Texture> textures(3);
+    textures[0].stops = {{0, {vec3(0.2f)}}, {1, {vec3(0.7f)}}};
+    textures[1].pattern.kind = Kind::Checker;
+    textures[1].stops = {{0, {vec3(1, 0, 0)}}, {0, {vec3(0, 1, 0)}}};
+    textures[2] = textures[1];
+    textures[2].stops[1].texture = 0;
+    const double far = 1e13, infinity = std::numeric_limits<double>::infinity();
+    for (uint32_t number = 0; number < textures.size(); ++number) {
+        const PlacedTexture placed{number,
+                                   {dvec4(2, 0, 0, 0.5), dvec4(0, 1, 1, 0), dvec4(0, 0, 1, 0.25)}};
+        for (const dvec3& at : {dvec3(0.3), dvec3(0.8, 0.1, 1.3), dvec3(-0.6, 5.2, 0.4),
+                                dvec3(far, 0, 0), dvec3(infinity)})
+            EXPECT_EQ(color_at(textures, placed, at),
+                      color_at(textures, number, placed.at(TexturePoint(at))))
+                << number;
+    }
+}
+
 TEST(Texture, AveragesByWeight) {
     const std::vector<Texture> textures{
         {{.kind = Kind::Average}, {{1, {{1, 0, 0}}}, {3, {{0, 1, 0}}}}}};

@@ -9,6 +9,7 @@
 #include <bit>
 #include <cassert>
 #include <cmath>
+#include <iterator>
 #include <unordered_map>
 
 namespace ovc {
@@ -117,21 +118,32 @@ private:
 
     /// Returns the pixels that differ from a neighbour, in the order of tracing.
     std::vector<uint32_t> rough() const {
-        // Tasks write the rows of others in no case: a pixel knows of those at its right and below.
-        enum : uint8_t { kRight = 1, kBelow = 2 };
-        const size_t w = size_.width, count = colors_.size();
-        std::vector<uint8_t> differs(count);
-        parallel_for(count, kPixelGrain, [&](size_t first, size_t last) {
-            for (size_t i = first; i < last; ++i)
-                differs[i] = uint8_t((i % w + 1 < w && differ(i, i + 1) ? kRight : 0) |
-                                     (i + w < count && differ(i, i + w) ? kBelow : 0));
+        const size_t w = size_.width, h = size_.height;
+        enum : uint8_t { kRight = 1, kBelow = 2 }; // the neighbours that a pixel differs from
+        std::vector<uint8_t> differs(w * h), is_rough(w * h);
+        in_rows([&](size_t y) {
+            for (size_t x = 0, i = y * w; x < w; ++x, ++i)
+                differs[i] = uint8_t((x + 1 < w && differ(i, i + 1) ? kRight : 0) |
+                                     (y + 1 < h && differ(i, i + w) ? kBelow : 0));
+        });
+        in_rows([&](size_t y) {
+            for (size_t x = 0, i = y * w; x < w; ++x, ++i)
+                is_rough[i] = differs[i] || (x > 0 && differs[i - 1] & kRight) ||
+                              (y > 0 && differs[i - w] & kBelow);
         });
         std::vector<uint32_t> pixels;
-        for (const uint32_t i : order_)
-            if (differs[i] || (i % w > 0 && differs[i - 1] & kRight) ||
-                (i >= w && differs[i - w] & kBelow))
-                pixels.push_back(i);
+        std::ranges::copy_if(order_, std::back_inserter(pixels),
+                             [&](uint32_t pixel) { return is_rough[pixel]; });
         return pixels;
+    }
+
+    /// Calls row(y) for each row of the picture, in parallel.
+    template <class Row>
+    void in_rows(Row row) const {
+        parallel_for(size_.height, kPixelGrain / size_.width + 1, [&](size_t first, size_t last) {
+            for (size_t y = first; y < last; ++y)
+                row(y);
+        });
     }
 
     /// Returns the pixels of one sample that differ from one of these, beside it.

@@ -180,7 +180,7 @@ vec3 background_color(const Scene& scene, const vec3& up, const dvec3& dir) {
     const float height = float(glm::dot(towards, dvec3(up)));
     vec3 seen = glm::mix(background.horizon, background.zenith, std::clamp(height, 0.0f, 1.0f));
     for (const PlacedTexture& layer : background.layers) {
-        const TransparentColor c = color_at(scene.textures, layer.texture, layer.at(towards));
+        const TransparentColor c = color_at(scene.textures, layer, towards);
         seen = c.opacity() * c.rgb +
                (background.tints ? c.through() : vec3(c.filter + c.transmit)) * seen;
     }

@@ -54,7 +54,7 @@ double phase_of(const Medium& medium, double cosine) {
 static vec3 density_at(std::span<const Texture> textures, const Medium& medium, const dvec3& at) {
     vec3 density(1);
     for (const PlacedTexture& placed : medium.densities)
-        density *= color_at(textures, placed.texture, placed.at(TexturePoint(at))).rgb;
+        density *= color_at(textures, placed, at).rgb;
     return glm::max(density, vec3(0));
 }
 

@@ -64,7 +64,7 @@ static void take_color(const Scene& scene, const Material& material, const Textu
     surface.color = material.color;
     if (material.texture) {
         const PlacedTexture& placed = *material.texture;
-        const TransparentColor color = color_at(scene.textures, placed.texture, placed.at(point));
+        const TransparentColor color = color_at(scene.textures, placed, point);
         surface.color = color.rgb;
         if (material.finish) {
             surface.opacity =

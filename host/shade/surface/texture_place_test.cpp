@@ -91,6 +91,23 @@ TEST(TexturePlace, AConeSeesItsWidthAndMoreAlongAGrazingView) {
     }
 }
 
+TEST(TexturePlace, ConesAreNeededWhereMeansAreTaken) {
+    Scene scene;
+    EXPECT_FALSE(needs_cones(scene));
+    scene.textures.resize(1);
+    scene.textures[0].pattern.kind = Pattern::Kind::Checker;
+    scene.materials.resize(1);
+    EXPECT_FALSE(needs_cones(scene));
+    scene.textures[0].pattern.kind = Pattern::Kind::Perlin;
+    EXPECT_TRUE(needs_cones(scene));
+    scene.textures[0] = {};
+    scene.textures[0].kind = TextureKind::Image;
+    EXPECT_TRUE(needs_cones(scene));
+    scene.textures.clear();
+    scene.materials[0].normal_map.emplace();
+    EXPECT_TRUE(needs_cones(scene));
+}
+
 TEST(TexturePlace, ATextureTakesThePlaceOfDiffuseLightInPathTracing) {
     const NotesArea lookup;
     Scene scene = textured_triangle(lookup);
