@@ -56,7 +56,7 @@ PLACES = {
     r"xxhash\.h": ["core/file/checksum.cpp"],
     r"assimp/": ["importers/mesh/assimp.cpp", "importers/mesh/assimp_look.h",
                  "importers/mesh/assimp_look.cpp"],
-    r"zlib\.h": ["importers/file/gzip_file.cpp"],
+    r"isa-l": ["importers/file/gzip_file.cpp"],
     r"epoxy/": ["gpu/gl/gl.h"],
     r"(EGL|GL|GLES\d?|KHR)/": [],
     r"(OpenEXR/|Imf)": ["host/output/image_exr.cpp"],

@@ -1,82 +1,110 @@
 // SPDX-License-Identifier: Apache-2.0
-// GzipFile unpacks by zlib; no other file sees it.
+// GzipFile unpacks by ISA-L; no other file sees it.
 #include "importers/file/gzip_file.h"
 
 #include "core/file/disk_file.h"
 
 #include <fmt/format.h>
-#include <zlib.h>
+#include <isa-l/igzip_lib.h>
 
 #include <algorithm>
 #include <cassert>
 #include <cerrno>
 #include <cstring>
-#include <new>
 #include <vector>
 
 #include <fcntl.h>
 #include <unistd.h>
+#ifdef __x86_64__
+#include <immintrin.h>
+#endif
 
 namespace ovc {
 
 static constexpr size_t kPackedBytes = size_t(1) << 16; // larger was no faster
 static constexpr unsigned char kMark[] = {0x1f, 0x8b};
-static constexpr int kGzipAlone = 16; // added to the bits of zlib's window
+#ifdef __x86_64__
+[[gnu::target("avx")]] static void clear_upper_halves() {
+    _mm256_zeroupper();
+}
+#endif
 
-/// The state of zlib, and the packed bytes that it gets.
+/// Calls isal_inflate(), which leaves upper halves of vector registers in use: all code of the
+/// thread that knows nothing of them would be slower from then on, by half in building.
+static int inflate(inflate_state& state) {
+    const int code = isal_inflate(&state);
+#ifdef __x86_64__
+    if (__builtin_cpu_supports("avx"))
+        clear_upper_halves();
+#endif
+    return code;
+}
+
+/// Returns what is wrong with packed data of which isal_inflate() says so.
+static const char* damage_of(int code) {
+    switch (code) {
+    case ISAL_INVALID_WRAPPER:
+        return "its header is none of gzip";
+    case ISAL_UNSUPPORTED_METHOD:
+        return "unknown compression method";
+    case ISAL_INCORRECT_CHECKSUM:
+        return "incorrect checksum";
+    default:
+        return "no code is known by it";
+    }
+}
+
+/// The state of ISA-L, which unpacks four times as fast as zlib, and the packed bytes that it gets.
 class GzipFile::Unpacking {
 public:
     explicit Unpacking(GzipFile& file) : file_(file), packed_(kPackedBytes) {
-        if (inflateInit2(&zlib_, MAX_WBITS + kGzipAlone) != Z_OK)
-            throw std::bad_alloc();
+        isal_inflate_init(&state_);
+        state_.crc_flag = ISAL_GZIP;
     }
-    ~Unpacking() { inflateEnd(&zlib_); }
     Unpacking(const Unpacking&) = delete;
 
     size_t read(std::span<unsigned char> to, std::string& damage) {
-        zlib_.next_out = to.data();
-        zlib_.avail_out = unsigned(to.size());
-        while (zlib_.avail_out > 0 && !ended_)
+        state_.next_out = to.data();
+        state_.avail_out = uint32_t(to.size());
+        while (state_.avail_out > 0 && !ended_)
             if (const std::string found = unpack_some(); !found.empty()) {
                 ended_ = true;
                 damage = found;
             }
-        return to.size() - zlib_.avail_out;
+        return to.size() - state_.avail_out;
     }
 
 private:
     /// Returns what is wrong with the file, nothing where all is well.
     std::string unpack_some() {
         std::string damage;
-        if (zlib_.avail_in < (between_members_ ? sizeof(kMark) : 1) && !load(damage))
-            return damage;
         if (between_members_) {
-            ended_ = zlib_.avail_in < sizeof(kMark) ||
-                     !std::equal(std::begin(kMark), std::end(kMark), zlib_.next_in);
+            if (state_.avail_in < sizeof(kMark) && !load(damage))
+                return damage;
+            ended_ = state_.avail_in < sizeof(kMark) ||
+                     !std::equal(std::begin(kMark), std::end(kMark), state_.next_in);
             between_members_ = false;
-            if (ended_)
-                return {};
+            return {};
         }
-        const int code = inflate(&zlib_, Z_NO_FLUSH);
-        if (code == Z_MEM_ERROR)
-            throw std::bad_alloc();
-        if (code == Z_STREAM_END) {
-            inflateReset(&zlib_);
+        const uint32_t room = state_.avail_out;
+        if (const int code = inflate(state_); code < 0 || code == ISAL_NEED_DICT)
+            return fmt::format("the compressed data is damaged: {}", damage_of(code));
+        if (state_.block_state == ISAL_BLOCK_FINISH) {
+            isal_inflate_reset(&state_);
             between_members_ = true;
-        } else if (code != Z_OK && code != Z_BUF_ERROR) {
-            return fmt::format("the compressed data is damaged: {}",
-                               zlib_.msg ? zlib_.msg : "no code is known by it");
+        } else if (state_.avail_out == room && state_.avail_in == 0) { // it kept nothing to give
+            load(damage);
         }
-        return {};
+        return damage;
     }
 
     /// Reads more behind the packed bytes that are left. Returns false where `damage` has the
     /// reason why there are none, though there should be.
     bool load(std::string& damage) {
-        std::copy_n(zlib_.next_in, zlib_.avail_in, packed_.data());
-        zlib_.next_in = packed_.data();
-        const size_t got = file_.read_plain(std::span(packed_).subspan(zlib_.avail_in), damage);
-        zlib_.avail_in += unsigned(got);
+        std::copy_n(state_.next_in, state_.avail_in, packed_.data());
+        state_.next_in = packed_.data();
+        const size_t got = file_.read_plain(std::span(packed_).subspan(state_.avail_in), damage);
+        state_.avail_in += uint32_t(got);
         if (got == 0 && damage.empty() && !between_members_)
             damage = "the compressed data ends early";
         return damage.empty();
@@ -84,7 +112,7 @@ private:
 
     GzipFile& file_;
     std::vector<unsigned char> packed_;
-    z_stream zlib_{};
+    inflate_state state_; // set by isal_inflate_init()
     bool between_members_ = false;
     bool ended_ = false;
 };

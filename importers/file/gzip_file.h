@@ -12,7 +12,7 @@ namespace ovc {
 
 /// A file is packed where it begins with the mark of gzip. Members that lie one behind the other
 /// are one text, and what else lies behind the last is passed over, as gzip does. A call that a
-/// signal interrupts goes on, which zlib's own files do not.
+/// signal interrupts goes on.
 class GzipFile {
 public:
     /// Returns null where the file cannot be opened; errno then says why.

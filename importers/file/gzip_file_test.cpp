@@ -77,9 +77,9 @@ TEST(GzipFile, TellsOfDamageBehindWhatIsSound) {
     std::string flipped = packed;
     flipped[packed.size() - 6] ^= 1; // in the checksum
     const Given checked = read(flipped);
-    EXPECT_EQ(checked.damage, "the compressed data is damaged: incorrect data check");
+    EXPECT_EQ(checked.damage, "the compressed data is damaged: incorrect checksum");
     EXPECT_EQ(checked.text, text);
-    EXPECT_EQ(read(std::string("\x1f\x8b") + "no code").damage,
+    EXPECT_EQ(read(std::string("\x1f\x8b") + "no method").damage,
               "the compressed data is damaged: unknown compression method");
 }
 
