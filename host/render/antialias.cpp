@@ -104,8 +104,10 @@ private:
     bool sample_middles() {
         for (size_t first = 0; first < order_.size(); first += points_.size()) {
             points_.resize(std::min(kMaxPoints, order_.size() - first));
-            for (size_t i = 0; i < points_.size(); ++i)
-                points_[i] = corner(order_[first + i]) + 0.5;
+            parallel_for(points_.size(), kPixelGrain, [&](size_t from, size_t to) {
+                for (size_t i = from; i < to; ++i)
+                    points_[i] = corner(order_[first + i]) + 0.5;
+            });
             if (!trace())
                 return false;
             parallel_for(points_.size(), kPixelGrain, [&](size_t from, size_t to) {
@@ -176,19 +178,15 @@ private:
 
     /// Adds depth x depth samples to each of the pixels.
     bool refine(const std::vector<uint32_t>& pixels) {
-        const size_t side = how_.depth, samples = side * side;
+        const size_t samples = size_t(how_.depth) * how_.depth;
         const size_t pixels_at_once = std::max<size_t>(kMaxPoints / samples, 1);
         for (size_t first = 0; first < pixels.size(); first += pixels_at_once) {
             const size_t count = std::min(pixels_at_once, pixels.size() - first);
             points_.resize(count * samples);
-            for (size_t i = 0; i < points_.size(); ++i) {
-                const uint32_t pixel = pixels[first + i / samples];
-                const size_t sample = i % samples;
-                const dvec2 off = 0.5 + double(how_.jitter) * chance(pixel, sample);
-                points_[i] =
-                    corner(pixel) +
-                    (dvec2(double(sample % side), double(sample / side)) + off) / double(side);
-            }
+            parallel_for(count, kPixelGrain / samples, [&](size_t from, size_t to) {
+                for (size_t i = from; i < to; ++i)
+                    place_samples(pixels[first + i], std::span(points_).subspan(i * samples));
+            });
             if (!trace())
                 return false;
             parallel_for(count, kPixelGrain / samples, [&](size_t from, size_t to) {
@@ -197,6 +195,16 @@ private:
             });
         }
         return true;
+    }
+
+    /// Sets the first of `points` to the places of the pixel's further samples.
+    void place_samples(uint32_t pixel, std::span<dvec2> points) const {
+        const uint32_t side = how_.depth;
+        for (uint32_t y = 0, sample = 0; y < side; ++y)
+            for (uint32_t x = 0; x < side; ++x, ++sample) {
+                const dvec2 off = 0.5 + double(how_.jitter) * chance(pixel, sample);
+                points[sample] = corner(pixel) + (dvec2(x, y) + off) / double(side);
+            }
     }
 
     void add(uint32_t pixel, std::span<const vec3> light) {

@@ -2,6 +2,8 @@
 // Based on: Amanatides 1984, "Ray Tracing with Cones".
 #pragma once
 
+#include "core/ray.h"
+
 namespace ovc {
 
 /// The cone that a ray stands for: its diameter where the ray begins, and by how much that grows
@@ -10,7 +12,10 @@ struct Cone {
     float width = 0;
     float spread = 0;
 
-    float width_at(double distance) const { return width + spread * float(distance); }
+    /// Returns the diameter at t of the ray.
+    float width_at_end(const Ray& ray, double t) const {
+        return spread == 0 ? width : width + spread * float(t * glm::length(ray.dir));
+    }
 };
 
 } // namespace ovc

@@ -102,9 +102,8 @@ vec3 finish_light(const SurfacePoint& surface, const dvec3& towards, const vec3&
     const Finish& finish = *surface.material->finish;
     const double cosine = glm::dot(surface.normal, towards);
     const float grain = finish.crand > 0 ? finish.crand * random_share(surface.position) : 0;
-    vec3 light = surface.color *
-                 (surface.opacity *
-                  (finish.diffuse * brilliant(finish, cosine) - grain));
+    vec3 light =
+        surface.color * (surface.opacity * (finish.diffuse * brilliant(finish, cosine) - grain));
     if (highlights)
         light += surface.maps.gloss() * metallic_tint(surface, finish.metallic, cosine) *
                  float(highlight(surface, towards));

@@ -168,8 +168,7 @@ SurfacePoint surface_point(const Scene& scene, const Ray& ray, const Hit& hit, c
     TexturePoint point(normals && mesh.curved ? on_curve(t, *normals, w, on_plane) : on_plane,
                        s.normal, s.view);
     if (!scene.textures.empty())
-        take_texture_place(scene, mesh, t, hit, cone.width_at(hit.t * glm::length(ray.dir)), s,
-                           point);
+        take_texture_place(scene, mesh, t, hit, cone.width_at_end(ray, hit.t), s, point);
     take_material(scene, side_of(scene, mesh.material, s.entering), point, s);
     return s;
 }
@@ -238,6 +237,8 @@ static dvec3 shadow_offset_of(const Light& light, const dvec3& there) {
 /// before at the surface that the light is projected through; 0 where it misses that.
 static double end_of_shadow_ray(const Light& light, const dvec3& from, const dvec3& way) {
     constexpr double kMinDistance = 1e-6; // for a place on the surface itself
+    if (light.clearance == 0 && !light.projector)
+        return glm::dot(way, way) > 0 ? 1 : 0;
     const double length = glm::length(way);
     const double end = length > light.clearance ? 1 - light.clearance / length : 0;
     if (!light.projector)

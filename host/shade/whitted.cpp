@@ -98,6 +98,15 @@ static bool lets_light_through(const SurfacePoint& surface) {
                                     : surface.material->transmission > 0;
 }
 
+/// Returns false where no mirrored or refracted ray leaves the surface.
+static bool sends_rays_on(const SurfacePoint& surface) {
+    if (lets_light_through(surface) || !surface.coats.empty())
+        return true;
+    const std::optional<Finish>& finish = surface.material->finish;
+    return finish ? finish->reflection != vec3(0) || finish->grazing_reflection != vec3(0)
+                  : surface.material->mirror != 0;
+}
+
 static bool lets_light_through(const Scene& scene) {
     return std::any_of(scene.materials.begin(), scene.materials.end(),
                        [](const Material& m) { return m.transmission > 0; });
@@ -335,7 +344,11 @@ Containers Whitted::inside_behind(const Path& path, const Met& met, bool goes_th
 /// color keeps the weight of a ray that is not followed.
 void Whitted::follow(const Ray& ray, const Path& path, const Hit& hit, Met& met,
                      Spawned& spawned) const {
-    const Cone cone{path.cone.width_at(hit.t * glm::length(ray.dir)), path.cone.spread};
+    const vec3 arriving = path.weight * share_kept(ray, met.surface);
+    met.weight = arriving;
+    if (path.depth >= max_depth_ || !sends_rays_on(met.surface))
+        return;
+    const Cone cone{path.cone.width_at_end(ray, hit.t), path.cone.spread};
     const uint32_t material = scene_.meshes[hit.id.mesh].material;
     // What lies around the surface's solid, from where or to where a ray goes through it.
     Solids around = path.within;
@@ -345,15 +358,13 @@ void Whitted::follow(const Ray& ray, const Path& path, const Hit& hit, Met& met,
         met.surface.ior_around = scene_.materials[around.innermost()].ior;
     for (Coat& coat : met.surface.coats)
         coat.surface.ior_around = met.surface.ior_around;
-    const vec3 arriving = path.weight * share_kept(ray, met.surface);
-    met.weight = arriving;
     const bool clear = lets_light_through(met.surface);
     const std::optional<Ray> refracted = clear ? refracted_ray(ray, met.surface) : std::nullopt;
     const bool total = clear && !refracted;
     const Branches parts = branches(met.surface, total);
     const auto spawn = [&](const vec3& share, float taken, RayKind kind, int deeper, auto&& child) {
         const vec3 weight = arriving * share;
-        if (path.depth >= max_depth_ || max_component(glm::abs(weight)) < kMinWeight)
+        if (max_component(glm::abs(weight)) < kMinWeight)
             return;
         met.weight -= arriving * taken;
         const bool reflected = path.reflected || kind == RayKind::Reflection;
