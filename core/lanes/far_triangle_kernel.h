@@ -39,6 +39,11 @@ OVC_INLINE FarHit<V> far_hit(const FarTriangle& f, const RaysOf<V>& rays) {
     hit.last = smaller(larger(below + below_off, above + above_off), rays.t_max);
     hit.first = tells ? hit.first : rays.from;
     hit.last = tells ? hit.last : rays.t_max;
+    hit.possible = ~(hit.first > hit.last);
+    if (bits_of<V>(hit.possible) == 0) { // as of most rays from the plane itself
+        hit.certain = hit.possible;
+        return hit;
+    }
     const V middle = 0.5 * (hit.first + hit.last);
     const V error =
         longest * (hit.last - hit.first) + kSlack * (reach + longest * magnitude(middle));
@@ -59,7 +64,7 @@ OVC_INLINE FarHit<V> far_hit(const FarTriangle& f, const RaysOf<V>& rays) {
         inside &= weights[corner] > errors[corner];
         outside |= weights[corner] < -errors[corner];
     }
-    hit.possible = ~(outside | (hit.first > hit.last));
+    hit.possible &= ~outside;
     hit.certain = hit.possible & inside & (hit.first > rays.from) & (hit.last < rays.t_max);
     return hit;
 }

@@ -9,6 +9,7 @@
 #include <cassert>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <utility>
 
 namespace ovc {
@@ -75,7 +76,8 @@ CameraRays::CameraRays(const Pinhole& pinhole, const Film& film, const CameraSam
       sampling_(sampling),
       filter_(sampling.filter),
       order_(pixel_order(film.width(), film.height())) {
-    std::erase_if(order_, [&](uint32_t pixel) { return film.done(pixel); });
+    if (film.pixels_done() > 0) // else nobody touches the film's memory before its light comes
+        std::erase_if(order_, [&](uint32_t pixel) { return film.done(pixel); });
 }
 
 CameraRays::CameraRays(const Pinhole& pinhole, const Film& film, std::span<const dvec2> points)
@@ -85,10 +87,10 @@ CameraRays::CameraRays(const Pinhole& pinhole, const Film& film, std::span<const
       filter_(sampling_.filter),
       points_(points) {
     assert(points.size() == uint64_t(film.width()) * film.height());
-    order_.reserve(points.size());
-    for (uint32_t pixel = 0; pixel < points.size(); ++pixel)
-        if (!film.done(pixel))
-            order_.push_back(pixel);
+    order_.resize(points.size());
+    std::iota(order_.begin(), order_.end(), 0);
+    if (film.pixels_done() > 0)
+        std::erase_if(order_, [&](uint32_t pixel) { return film.done(pixel); });
 }
 
 CameraRays::CameraRays(const Pinhole& pinhole, uint32_t samples, std::vector<uint32_t> pixels,

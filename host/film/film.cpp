@@ -30,6 +30,7 @@ Film::Film(uint32_t width, uint32_t height, uint32_t samples)
     : width_(width),
       height_(height),
       samples_(samples),
+      mean_scale_(1 / (kOne * samples)),
       across_bits_(height > 1 ? kTileBits / 2 : kTileBits), // pixels of a single row are points
       columns_(pieces_of(width, across_bits_)),
       rows_(pieces_of(height, kTileBits - across_bits_)),
@@ -99,9 +100,8 @@ void Film::restore_tile(uint32_t number, std::span<const std::byte, kTileBytes> 
 }
 
 dvec3 Film::mean(uint32_t pixel) const {
-    const double scale = 1 / (kOne * samples_);
     const Sums sum = sums(pixel);
-    return scale * dvec3(double(sum[0]), double(sum[1]), double(sum[2]));
+    return mean_scale_ * dvec3(double(sum[0]), double(sum[1]), double(sum[2]));
 }
 
 PixelSource Film::pixels() const {

@@ -38,13 +38,9 @@ public:
         answered(place(pixel)).fetch_sub(rays, std::memory_order_relaxed);
     }
     /// Counts one ray of the pixel as answered. Open the rays that it spawned before.
-    void close(uint32_t pixel) { close(place(pixel)); }
-    /// Adds the light that one ray of the pixel has found, and counts it as answered.
-    void answer(uint32_t pixel, const vec3& light) {
-        const Place at = place(pixel);
-        add(at, light);
-        close(at);
-    }
+    void close(uint32_t pixel);
+
+    class Answers;
 
     bool done(uint32_t pixel) const {
         return answered(place(pixel)).load(std::memory_order_acquire) == samples_;
@@ -94,11 +90,6 @@ private:
     };
     Place place(uint32_t pixel) const;
     void add(const Place& at, const vec3& light);
-    void close(const Place& at) {
-        assert(answered(at).load() != samples_);
-        if (answered(at).fetch_add(1, std::memory_order_acq_rel) + 1 == samples_)
-            done_.fetch_add(1, std::memory_order_relaxed);
-    }
     Tile& tile_of(uint32_t number) const {
         assert(number < tile_count());
         return static_cast<Tile*>(tiles_.get())[number];
@@ -109,11 +100,43 @@ private:
     }
 
     const uint32_t width_, height_, samples_;
+    const double mean_scale_; // makes the mean light of a pixel's sums
     const uint32_t across_bits_;    // a tile is 2^across_bits_ pixels wide
     const uint32_t columns_, rows_; // of tiles
     const SystemPages tiles_;
     std::atomic<uint64_t> done_{0}; // pixels
 };
+
+/// The answers of one task. How many pixels they finish is added to the film's count in the end, so
+/// that tasks do not wait for each other's.
+class Film::Answers {
+public:
+    explicit Answers(Film& film) : film_(film) {}
+    ~Answers() { film_.done_.fetch_add(done_, std::memory_order_relaxed); }
+    Answers(const Answers&) = delete;
+
+    /// Does what Film::close() does.
+    void close(uint32_t pixel) { close(film_.place(pixel)); }
+    /// Adds the light that one ray of the pixel has found, and counts it as answered.
+    void close(uint32_t pixel, const vec3& light) {
+        const Place at = film_.place(pixel);
+        film_.add(at, light);
+        close(at);
+    }
+
+private:
+    void close(const Place& at) {
+        assert(answered(at).load() != film_.samples_);
+        done_ += answered(at).fetch_add(1, std::memory_order_acq_rel) + 1 == film_.samples_;
+    }
+
+    Film& film_;
+    uint64_t done_ = 0; // pixels
+};
+
+inline void Film::close(uint32_t pixel) {
+    Answers(*this).close(pixel);
+}
 
 inline Film::Place Film::place(uint32_t pixel) const {
     assert(pixel < size_t(width_) * height_);

@@ -114,8 +114,9 @@ public:
             return *error_;
         if (colors)
             parallel_for(colors->size(), kPixelGrain, [&](size_t first, size_t last) {
+                Film::Answers answers(film);
                 for (size_t pixel = first; pixel < last; ++pixel)
-                    film.answer(uint32_t(pixel), (*colors)[pixel]);
+                    answers.close(uint32_t(pixel), (*colors)[pixel]);
             });
         report_.complete = colors.has_value();
         return report_;
@@ -140,7 +141,7 @@ private:
         report_ += *done;
         parallel_for(light.size(), kPixelGrain, [&](size_t first, size_t last) {
             for (size_t i = first; i < last; ++i)
-                light[i] = film.done(uint32_t(i)) ? vec3(film.mean(uint32_t(i))) : vec3(0);
+                light[i] = vec3(film.mean(uint32_t(i)));
         });
         return done->complete;
     }

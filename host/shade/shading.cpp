@@ -76,19 +76,20 @@ void Shading::shade_block(const RayList<Path>& paths, std::span<const Hit> hits,
             closed[closes++] = path.pixel;
     for (; next < shadows.size(); ++next)
         film_.open(shadows[next].pixel);
+    Film::Answers answers(film_);
     for (size_t i = 0; i < closes; ++i)
-        film_.close(closed[i]);
+        answers.close(closed[i]);
 }
 
 void Shading::arrive(std::span<const Shadow> purposes, std::span<const uint8_t> occluded) {
     assert(occluded.size() == purposes.size());
     parallel_for(purposes.size(), kShadingGrain, [&](size_t first, size_t last) {
-        for (size_t i = first; i < last; ++i) {
+        Film::Answers answers(film_);
+        for (size_t i = first; i < last; ++i)
             if (occluded[i])
-                film_.close(purposes[i].pixel);
+                answers.close(purposes[i].pixel);
             else
-                film_.answer(purposes[i].pixel, purposes[i].arriving);
-        }
+                answers.close(purposes[i].pixel, purposes[i].arriving);
     });
 }
 
@@ -96,6 +97,7 @@ void Shading::pass(RayList<Shadow>& shadows, std::span<const Hit> hits) {
     assert(hits.size() == shadows.size());
     goes_on_.resize(shadows.size());
     parallel_for(shadows.size(), kBlock, [&](size_t first, size_t last) {
+        Film::Answers answers(film_);
         for (size_t i = first; i < last; ++i) {
             Shadow& shadow = shadows.purposes[i];
             goes_on_[i] = hits[i].is_hit() && integrator_.pass(hits[i], shadows.rays[i], shadow);
@@ -103,7 +105,7 @@ void Shading::pass(RayList<Shadow>& shadows, std::span<const Hit> hits) {
                 shadows.skip[i] = hits[i].id;
                 continue;
             }
-            film_.answer(shadow.pixel, shadow.arriving);
+            answers.close(shadow.pixel, shadow.arriving);
         }
     });
     size_t kept = 0;
