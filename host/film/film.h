@@ -100,7 +100,7 @@ private:
     }
 
     const uint32_t width_, height_, samples_;
-    const double mean_scale_; // makes the mean light of a pixel's sums
+    const double mean_scale_;       // makes the mean light of a pixel's sums
     const uint32_t across_bits_;    // a tile is 2^across_bits_ pixels wide
     const uint32_t columns_, rows_; // of tiles
     const SystemPages tiles_;
