@@ -6,6 +6,7 @@
 #include "core/vec.h"
 
 #include <cmath>
+#include <initializer_list>
 
 namespace ovc {
 

@@ -50,28 +50,60 @@ static Census count(const Chunk& chunk) {
         sum_of);
 }
 
-/// The census of all chunks. A mesh is looked at triangle by triangle once, and again only where an
-/// instance may reach beyond the bounds so far.
-static Census count(const Soup& soup) {
-    Census all;
-    std::map<Chunk::MeshKey, Census> meshes;
-    for (const Chunk& chunk : soup.chunks) {
+namespace {
+
+/// Looks at each mesh once, for all of its instances.
+class Instances {
+public:
+    /// Returns whether the chunk is an instance of which nothing is dropped, and that lies within
+    /// the bounds.
+    bool adds_nothing(const Chunk& chunk, const Box& bounds) {
         const Transform* transform = chunk.transform();
-        if (!transform || chunk.size() == 0) {
-            all = sum_of(all, count(chunk));
-            continue;
-        }
-        const auto [place, is_new] = meshes.try_emplace(chunk.mesh_key());
+        if (!transform || chunk.size() == 0)
+            return false;
+        const auto [place, is_new] = meshes_.try_emplace(chunk.mesh_key());
         if (is_new)
             place->second = count(chunk.unplaced());
         const Census& mesh = place->second;
-        Box box = all.bounds;
+        Box box = bounds;
         box.add(placed_box(mesh.bounds, transform));
-        const bool is_inside = box.lo == all.bounds.lo && box.hi == all.bounds.hi;
-        if (!is_inside || mesh.dropped.total() > 0 || !is_well_placed(mesh.bounds, transform))
-            all = sum_of(all, count(chunk));
+        const bool is_inside = box.lo == bounds.lo && box.hi == bounds.hi;
+        return is_inside && mesh.dropped.total() == 0 && is_well_placed(mesh.bounds, transform);
     }
+
+private:
+    std::map<Chunk::MeshKey, Census> meshes_;
+};
+
+} // namespace
+
+static Census count(const Soup& soup) {
+    Census all;
+    Instances instances;
+    for (const Chunk& chunk : soup.chunks)
+        if (!instances.adds_nothing(chunk, all.bounds))
+            all = sum_of(all, count(chunk));
     return all;
+}
+
+/// Returns the box with what can be hit of the chunk in it, too.
+static Box grown(const Box& before, const Chunk& chunk) {
+    return parallel_reduce(
+        chunk.size(), before,
+        [&](size_t first, size_t last, Box box) {
+            for_each_triangle(chunk, uint32_t(first), uint32_t(last), [&](const Triangle& t) {
+                // Most lie within what was found so far, and then it does not matter what they are.
+                const bool is_inside =
+                    box.contains(t[0]) && box.contains(t[1]) && box.contains(t[2]);
+                if (!is_inside && triangle_fault(t) == TriangleFault::None)
+                    box.add(bounds_of(t));
+            });
+            return box;
+        },
+        [](Box a, const Box& b) {
+            a.add(b);
+            return a;
+        });
 }
 
 static uint64_t triangles_without_normals(const Scene& scene) {
@@ -174,8 +206,10 @@ std::string left_out_text(const std::vector<LeftOut>& left_out) {
 
 Box hittable_bounds(const Soup& soup) {
     Box bounds;
+    Instances instances;
     for (const Chunk& chunk : soup.chunks)
-        bounds.add(count(chunk).bounds);
+        if (!instances.adds_nothing(chunk, bounds))
+            bounds = grown(bounds, chunk);
     return bounds;
 }
 

@@ -49,8 +49,10 @@ TEST(SceneSummary, CountsInstancesAsTheirTriangles) {
     hittable_triangles(scene.soup, &dropped, &bounds);
     EXPECT_EQ(s.dropped.degenerate, dropped.degenerate);
     EXPECT_EQ(s.dropped.degenerate, 8u); // a line in each of six, and two that are flat
-    EXPECT_EQ(s.bounds.lo, bounds.lo);
-    EXPECT_EQ(s.bounds.hi, bounds.hi);
+    for (const Box& box : {s.bounds, hittable_bounds(scene.soup)}) {
+        EXPECT_EQ(box.lo, bounds.lo);
+        EXPECT_EQ(box.hi, bounds.hi);
+    }
 }
 
 TEST(SceneSummary, KnowsWhatIsNeeded) {

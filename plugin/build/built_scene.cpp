@@ -305,8 +305,12 @@ HittableParts take_hittable_parts(BuiltScene& scene, Placed placed, BuildProgres
     SharedParts shared(scene);
     shared.take(placed, parts.shared, progress);
     std::vector<TriangleId>& triangles = parts.once.triangles;
-    triangles.insert(triangles.end(), shared.by_themselves().begin(), shared.by_themselves().end());
-    std::ranges::sort(triangles);
+    assert(std::ranges::is_sorted(triangles));
+    std::vector<TriangleId> more(shared.by_themselves().begin(), shared.by_themselves().end());
+    std::ranges::sort(more);
+    const auto before = ptrdiff_t(triangles.size());
+    triangles.insert(triangles.end(), more.begin(), more.end());
+    std::ranges::inplace_merge(triangles, triangles.begin() + before);
     parts.once.bounds.add(shared.bounds());
     take_duplicates_out(scene, parts.once, progress);
     scene.seconds_level1 = watch.seconds();
