@@ -194,7 +194,7 @@ TEST(Importer, DamagedCompressionIsSaid) {
     folder.write("flipped.obj.gz", flipped);
     EXPECT_EQ(folder.failure("flipped.obj.gz"),
               "flipped.obj.gz, byte " + std::to_string(text.size()) +
-                  ": the compressed data is damaged: incorrect data check");
+                  ": the compressed data is damaged: incorrect checksum");
 }
 
 TEST(Importer, AssimpsFormatsSurviveDamage) {

@@ -11,6 +11,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <limits>
 
 namespace ovc {
@@ -49,6 +50,38 @@ std::optional<T> parse_real(std::string_view word) {
     return parse_windows_non_number<T>(word);
 }
 
+/// Returns the double nearest to a word of the form that most files write, -12.345 or 12, if its
+/// digits are a whole number below 2^53. That number and the power of ten are exact doubles, so
+/// their quotient rounds once. Based on: Clinger 1990, "How to Read Floating Point Numbers
+/// Accurately".
+std::optional<double> parse_plain(std::string_view word) {
+    static constexpr double kPowers[] = {1e0, 1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,
+                                         1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17};
+    const char* at = word.data();
+    const char* const last = at + word.size();
+    const bool negative = at != last && *at == '-';
+    at += negative;
+    uint64_t digits = 0;
+    const auto take_digits = [&] {
+        const char* const first = at;
+        for (; at != last && *at >= '0' && *at <= '9'; ++at)
+            digits = digits * 10 + uint64_t(*at - '0');
+        return size_t(at - first);
+    };
+    const size_t whole = take_digits();
+    size_t behind_point = 0;
+    if (at != last && *at == '.') {
+        ++at;
+        behind_point = take_digits();
+        if (behind_point == 0)
+            return std::nullopt;
+    }
+    if (at != last || whole == 0 || whole + behind_point >= std::size(kPowers) || digits >> 53 != 0)
+        return std::nullopt;
+    const double value = double(digits) / kPowers[behind_point];
+    return negative ? -value : value;
+}
+
 /// Returns whether the value lies halfway between two floats, as one text in 2^29 does once it is
 /// rounded to double.
 bool is_between_floats(double value) {
@@ -58,11 +91,15 @@ bool is_between_floats(double value) {
 } // namespace
 
 std::optional<float> parse_float(std::string_view word) {
+    // Rounded to double, a text is on the same side of halfway as before, or there.
+    if (const auto value = parse_plain(word); value && !is_between_floats(*value))
+        return float(*value);
     return parse_real<float>(word);
 }
 
 std::optional<double> parse_double(std::string_view word) {
-    const std::optional<double> value = parse_real<double>(word);
+    const std::optional<double> plain = parse_plain(word);
+    const std::optional<double> value = plain ? plain : parse_real<double>(word);
     if (value && is_between_floats(*value))
         if (const auto nearest = parse_real<float>(word); nearest && *nearest != float(*value))
             return std::nextafter(*value, double(*nearest));

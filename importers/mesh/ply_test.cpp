@@ -421,7 +421,7 @@ TEST(Ply, DamageBehindTheLastRowOfACompressedFileIsAnError) {
         const char* name;
         std::string contents;
         const char* message;
-    } cases[] = {{"checksum", flipped, "the compressed data is damaged: incorrect data check"},
+    } cases[] = {{"checksum", flipped, "the compressed data is damaged: incorrect checksum"},
                  {"cut", packed.substr(0, packed.size() - 3), "the compressed data ends early"}};
     for (const auto& test : cases) {
         folder.write("bad.ply", test.contents);
