@@ -3,8 +3,8 @@
 // held.
 #pragma once
 
-#include "importers/file/triangle_store.h"
 #include "importers/scene_file.h"
+#include "importers/scratch/triangle_store.h"
 #include "importers/test_files.h"
 
 namespace ovc {

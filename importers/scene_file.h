@@ -6,8 +6,8 @@
 #include "core/file/archive.h"
 #include "importers/file/files_read.h"
 #include "importers/file/output_file.h"
-#include "importers/file/triangle_store.h"
 #include "importers/importer.h"
+#include "importers/scratch/triangle_store.h"
 
 #include <filesystem>
 #include <functional>

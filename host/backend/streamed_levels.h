@@ -6,8 +6,8 @@
 #include "core/result.h"
 #include "core/vec.h"
 #include "host/backend/backend.h"
-#include "importers/file/scratch_file.h"
 #include "importers/file/step_file.h"
+#include "importers/scratch/scratch_file.h"
 
 #include <functional>
 #include <optional>

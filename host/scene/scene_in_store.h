@@ -7,7 +7,7 @@
 #include "core/system/log.h"
 #include "host/backend/streamed_levels.h"
 #include "host/scene/scene_source.h"
-#include "importers/file/triangle_store.h"
+#include "importers/scratch/triangle_store.h"
 
 #include <cstdint>
 #include <filesystem>

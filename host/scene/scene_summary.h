@@ -5,7 +5,7 @@
 #include "core/box.h"
 #include "core/result.h"
 #include "core/scene.h"
-#include "importers/file/triangle_store.h"
+#include "importers/scratch/triangle_store.h"
 
 #include <cstdint>
 #include <string>

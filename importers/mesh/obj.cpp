@@ -3,7 +3,6 @@
 // material.
 // Source: Wavefront, "Advanced Visualizer" manual, appendix B1 (the Object files format).
 #include "core/file/triangle_sink.h"
-#include "importers/file/scratch_array.h"
 #include "importers/file/source.h"
 #include "importers/file/text.h"
 #include "importers/mesh/blocks.h"
@@ -11,6 +10,7 @@
 #include "importers/mesh/polygon.h"
 #include "importers/origin.h"
 #include "importers/readers.h"
+#include "importers/scratch/scratch_array.h"
 
 #include <fmt/format.h>
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The PLY reader streams polygons and triangle strips, in ASCII and in binary of either byte order.
 #include "core/file/triangle_sink.h"
-#include "importers/file/spilling_array.h"
 #include "importers/mesh/blocks.h"
 #include "importers/mesh/ply_rows.h"
 #include "importers/mesh/polygon.h"
 #include "importers/origin.h"
 #include "importers/readers.h"
+#include "importers/scratch/spilling_array.h"
 
 #include <cassert>
 

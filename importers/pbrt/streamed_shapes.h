@@ -3,10 +3,10 @@
 // until the origin of the scene is known.
 #pragma once
 
-#include "importers/file/scratch_array.h"
 #include "importers/pbrt/interpret/diagnostics.h"
 #include "importers/pbrt/mesh_output.h"
 #include "importers/pbrt/runs.h"
+#include "importers/scratch/scratch_array.h"
 
 namespace ovc::pbrt {
 

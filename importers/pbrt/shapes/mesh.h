@@ -4,7 +4,7 @@
 
 #include "core/box.h"
 #include "core/vec.h"
-#include "importers/file/triangle_store.h"
+#include "importers/scratch/triangle_store.h"
 
 #include <cassert>
 #include <cstdint>

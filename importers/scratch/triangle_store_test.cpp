@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // TriangleStore and ScratchFile: what went in comes out, nothing is left behind, and a disk that
 // fails is a sentence.
-#include "importers/file/triangle_store.h"
+#include "importers/scratch/triangle_store.h"
 #include "tests/file_size_limit.h"
 
 #include <gmock/gmock.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // ScratchFile is made by O_TMPFILE, or removed as soon as it is made where a file system has no
 // such files.
-#include "importers/file/scratch_file.h"
+#include "importers/scratch/scratch_file.h"
 
 #include "core/file/disk_file.h"
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "core/system/system_pages.h"
-#include "importers/file/scratch_file.h"
+#include "importers/scratch/scratch_file.h"
 
 #include <algorithm>
 #include <cassert>

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "core/file/triangle_sink.h"
-#include "importers/file/scratch_file.h"
+#include "importers/scratch/scratch_file.h"
 
 #include <cstdint>
 #include <vector>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // ScratchArray gives back what it took, within its memory, whatever the order of reading.
 #include "core/vec.h"
-#include "importers/file/scratch_array.h"
+#include "importers/scratch/scratch_array.h"
 
 #include <gtest/gtest.h>
 

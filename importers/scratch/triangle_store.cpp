@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // TriangleStore gathers items to parts of a MiB, so that the system is not called for each
 // triangle.
-#include "importers/file/triangle_store.h"
+#include "importers/scratch/triangle_store.h"
 
 #include <algorithm>
 #include <cassert>

@@ -2,7 +2,7 @@
 // SpillingArray lies in memory, or, where it may take so much of that alone, partly on a disk.
 #pragma once
 
-#include "importers/file/scratch_array.h"
+#include "importers/scratch/scratch_array.h"
 
 #include <optional>
 #include <vector>
