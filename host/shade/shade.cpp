@@ -105,10 +105,10 @@ static dvec3 weights_off_edges(const Hit& hit, const Triangle& t, double doubled
                                double offset) {
     const dvec3 weights{1 - hit.u - hit.v, hit.u, hit.v};
     const dvec3 ab = t[1] - t[0], ac = t[2] - t[0];
-    // No edge is longer than these, and few hits are so near to one that more is to be known.
-    const double no_shorter = sum_of_magnitudes(ab) + sum_of_magnitudes(ac);
+    // Most hits are far enough from all edges, even if each were as long as this.
+    const double bound = sum_of_magnitudes(ab) + sum_of_magnitudes(ac);
     if (-max_component(-weights) >=
-        std::max(kEdgeShare, kMinEdgeOffsets * offset * no_shorter / doubled_area))
+        std::max(kEdgeShare, kMinEdgeOffsets * offset * bound / doubled_area))
         return weights;
     const dvec3 edges{glm::length(t[2] - t[1]), glm::length(ac), glm::length(ab)};
     const dvec3 heights = doubled_area / edges;

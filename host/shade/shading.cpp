@@ -66,7 +66,7 @@ void Shading::shade_block(const RayList<Path>& paths, std::span<const Hit> hits,
         film_.open(path.pixel);
     const std::span<const Path> answered = part(paths.purposes);
     const std::span<const Shadow> shadows = spawned.shadows.purposes;
-    // One that closes and one that opens leave the count as it is.
+    // A path that ends and a shadow ray that begins leave their pixel's count as it is.
     std::array<uint32_t, kBlock> closed;
     size_t next = 0, closes = 0;
     for (const Path& path : answered)
