@@ -152,8 +152,9 @@ dvec3 tilted_normal(const Around& around, const Bump& bump);
 /// Returns the weighted sum of the normals of the parts at the pattern's value, or around.normal
 /// where they cancel out.
 dvec3 mixed(const Around& around, const Bump& bump) {
-    const std::vector<TextureStop>& stops = around.textures[bump.pattern.texture].stops;
-    const Pattern& pattern = pattern_of(around, bump);
+    const Texture& texture = around.textures[bump.pattern.texture];
+    const std::vector<TextureStop>& stops = texture.stops;
+    const Pattern& pattern = texture.pattern;
     const auto part = [&](size_t i) { return tilted_normal(around, around.bumps[bump.parts[i]]); };
     dvec3 sum(0);
     if (pattern.kind == Pattern::Kind::Average) {
@@ -161,8 +162,7 @@ dvec3 mixed(const Around& around, const Bump& bump) {
             sum += stops[i].at * part(i);
     } else {
         const double value = evaluate(around.textures, pattern, point_of(around, bump)).value;
-        const Between where = between(
-            stops.size(), [&](size_t i) { return stops[i].at; }, value, is_discrete(pattern.kind));
+        const Between where = stops_at(texture, value);
         sum = (1 - where.share) * part(where.first);
         if (where.share > 0)
             sum += where.share * part(where.second);

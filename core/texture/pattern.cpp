@@ -126,9 +126,7 @@ TransparentColor color_of_pattern(std::span<const Texture> textures, const Textu
         });
         return sum;
     }
-    const Between where = between(
-        texture.stops.size(), [&](size_t i) { return texture.stops[i].at; }, place.value,
-        is_discrete(texture.pattern.kind));
+    const Between where = stops_at(texture, place.value);
     add(sum, color_of_stop(textures, texture.stops[where.first], point), float(1 - where.share));
     if (where.share > 0)
         add(sum, color_of_stop(textures, texture.stops[where.second], point), float(where.share));
@@ -198,8 +196,8 @@ TransparentColor color_at(std::span<const Texture> textures, const PlacedTexture
     if (texture.kind == TextureKind::Pattern && is_discrete(texture.pattern.kind) &&
         !texture.on_uv) {
         const dvec3 at = moved(texture.pattern, placed.at(world.at));
-        const double value = is_in_reach(at) ? discrete_value(texture.pattern, at) : 0;
-        const TextureStop& stop = texture.stops[size_t(value) % texture.stops.size()];
+        const double value = value_of_moved(textures, texture.pattern, at);
+        const TextureStop& stop = texture.stops[stops_at(texture, value).first];
         if (stop.texture == kNoTexture)
             return stop.color;
     }

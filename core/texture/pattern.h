@@ -92,4 +92,11 @@ inline bool is_discrete(Pattern::Kind kind) {
     return kind >= Pattern::Kind::Brick;
 }
 
+/// Returns where a value of the texture's pattern lies among its stops.
+inline Between stops_at(const Texture& texture, double value) {
+    return between(
+        texture.stops.size(), [&](size_t i) { return texture.stops[i].at; }, value,
+        is_discrete(texture.pattern.kind));
+}
+
 } // namespace ovc

@@ -15,9 +15,8 @@ namespace ovc {
 
 /// Returns the sRGB code, rounded to `bits` and scaled to 65535.
 static uint16_t sample_of(float linear, int bits) {
-    static const SrgbBytes kBytes;
     return bits == 16 ? uint16_t(std::lround(srgb_code(linear) * 65535))
-                      : uint16_t(kBytes.of(linear) * 257);
+                      : uint16_t(srgb_byte(linear) * 257);
 }
 
 Result<std::string> encode_png(const PixelSource& image, const FileContents& contents) {

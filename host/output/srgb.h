@@ -70,6 +70,12 @@ private:
     std::array<uint8_t, kCells> code_at_{};
 };
 
+/// Returns srgb_code() rounded to 8 bits.
+inline uint8_t srgb_byte(float light) {
+    static const SrgbBytes kBytes;
+    return kBytes.of(light);
+}
+
 /// Returns the linear light of a code from 0 to 1.
 inline float srgb_light(float code) {
     return code <= 0.04045f ? code / 12.92f : std::pow((code + 0.055f) / 1.055f, 2.4f);

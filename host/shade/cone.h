@@ -13,7 +13,7 @@ struct Cone {
     float spread = 0;
 
     /// Returns the diameter at t of the ray.
-    float width_at_end(const Ray& ray, double t) const {
+    float width_at(const Ray& ray, double t) const {
         return spread == 0 ? width : width + spread * float(t * glm::length(ray.dir));
     }
 };

@@ -176,7 +176,7 @@ void PathTracer::go_on(const Met& met, const Scattered& scattered, const vec3& w
               /* scattered= */ from.scattered || scattered.density > 0,
               weight,
               float(scattered.density)};
-    path.cone = {from.cone.width_at_end(met.ray, met.hit.t), from.cone.spread};
+    path.cone = {from.cone.width_at(met.ray, met.hit.t), from.cone.spread};
     if (scattered.density > 0) {
         path.cone.spread = std::max(path.cone.spread, kBounceSpread);
         Ray ray;

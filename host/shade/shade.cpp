@@ -168,7 +168,7 @@ SurfacePoint surface_point(const Scene& scene, const Ray& ray, const Hit& hit, c
     TexturePoint point(normals && mesh.curved ? on_curve(t, *normals, w, on_plane) : on_plane,
                        s.normal, s.view);
     if (!scene.textures.empty())
-        take_texture_place(scene, mesh, t, hit, cone.width_at_end(ray, hit.t), s, point);
+        take_texture_place(scene, mesh, t, hit, cone.width_at(ray, hit.t), s, point);
     take_material(scene, side_of(scene, mesh.material, s.entering), point, s);
     return s;
 }

@@ -348,7 +348,7 @@ void Whitted::follow(const Ray& ray, const Path& path, const Hit& hit, Met& met,
     met.weight = arriving;
     if (path.depth >= max_depth_ || !sends_rays_on(met.surface))
         return;
-    const Cone cone{path.cone.width_at_end(ray, hit.t), path.cone.spread};
+    const Cone cone{path.cone.width_at(ray, hit.t), path.cone.spread};
     const uint32_t material = scene_.meshes[hit.id.mesh].material;
     // What lies around the surface's solid, from where or to where a ray goes through it.
     Solids around = path.within;

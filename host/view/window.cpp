@@ -10,7 +10,6 @@
 
 #include <atomic>
 #include <chrono>
-#include <cmath>
 #include <future>
 #include <mutex>
 #include <thread>
@@ -181,8 +180,7 @@ void Window::show(const Image& image) {
     const std::lock_guard lock(shared_->mutex);
     for (size_t i = 0; i < image.pixels.size() && 3 * i < shared_->codes.size(); ++i)
         for (size_t channel = 0; channel < 3; ++channel)
-            shared_->codes[3 * i + channel] =
-                uint8_t(std::lround(255 * srgb_code(image.pixels[i][int(channel)])));
+            shared_->codes[3 * i + channel] = srgb_byte(image.pixels[i][int(channel)]);
     shared_->is_new = true;
 }
 

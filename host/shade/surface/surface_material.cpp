@@ -113,9 +113,7 @@ static vec3 add_mix(const Scene& scene, const PlacedTexture& placed, const Textu
     }
     const PatternPlace place =
         evaluate(scene.textures, mix.pattern, mix.on_uv ? moved_to_uv(point) : placed.at(point));
-    const Between where = between(
-        mix.stops.size(), [&](size_t i) { return mix.stops[i].at; }, place.value,
-        is_discrete(mix.pattern.kind));
+    const Between where = stops_at(mix, place.value);
     add_stop(mix.stops[where.first], 1 - where.share);
     add_stop(mix.stops[where.second], where.share);
     return through;
