@@ -106,7 +106,7 @@ LocalRay local_ray(WorldRay ray, Portal portal) {
     local.t_end = uintBitsToFloat(floatBitsToUint(float(length)) + 2u);
     double reach = max(frame.reach, frame.dir_reach * abs(inside.x));
     // Written so that a NaN is not decidable either.
-    local.decidable = reach <= double(OVC_MAX_LEAF_SIZES) && length <= 1.0e30 &&
-                      speed >= 1.0e-300 && speed <= 1.0e300;
+    local.decidable = reach <= double(OVC_MAX_LEAF_SIZES) && length <= 1.0e30lf &&
+                      speed >= 1.0e-300lf && speed <= 1.0e300lf;
     return local;
 }

@@ -127,14 +127,23 @@ struct LateGl::Hooks {
     static void barrier(GLbitfield bits) {
         late->add_barrier([=] { real<epoxy_glMemoryBarrier>(bits); });
     }
-    static GLsync fence(GLenum, GLbitfield) {
-        const auto* const made = reinterpret_cast<const void*>(++late->fences_);
-        late->pending_fences_.insert(made);
-        late->add([] {}, made);
-        return reinterpret_cast<GLsync>(late->fences_);
+    static GLsync fence(GLenum, GLbitfield) { return reinterpret_cast<GLsync>(late->add_mark()); }
+    static GLenum wait_for(GLsync fence, GLbitfield, GLuint64) {
+        return late->wait(reinterpret_cast<Mark>(fence));
     }
-    static GLenum wait_for(GLsync fence, GLbitfield, GLuint64) { return late->wait(fence); }
     static void delete_fence(GLsync) {}
+    static void begin_query(GLenum target, GLuint query) {
+        late->query_ = query;
+        Listed<epoxy_glBeginQuery>::call(target, query);
+    }
+    static void end_query(GLenum target) {
+        Listed<epoxy_glEndQuery>::call(target);
+        late->query_ends_[late->query_] = late->add_mark();
+    }
+    static void query_result(GLuint query, GLenum what, GLuint64* result) {
+        late->run_until(late->query_ends_[query]);
+        real<epoxy_glGetQueryObjectui64v>(query, what, result);
+    }
     static void flush() {} // a command that is sent need not be carried out soon
 };
 
@@ -147,13 +156,10 @@ void LateGl::Hooks::take_all() {
     list<epoxy_glBindVertexArray>("glBindVertexArray");
     list<epoxy_glViewport>("glViewport");
     list<epoxy_glDisable>("glDisable");
-    list<epoxy_glBeginQuery>("glBeginQuery");
-    list<epoxy_glEndQuery>("glEndQuery");
     wait<epoxy_glFinish>("glFinish");
     wait<epoxy_glBufferData>("glBufferData"); // of the buffer that is bound
     wait<epoxy_glGetNamedBufferSubData>("glGetNamedBufferSubData");
     wait<epoxy_glClearNamedBufferData>("glClearNamedBufferData");
-    wait<epoxy_glGetQueryObjectui64v>("glGetQueryObjectui64v");
     wait<epoxy_glDeleteBuffers>("glDeleteBuffers");
     wait<epoxy_glDeleteTextures>("glDeleteTextures");
     wait<epoxy_glDeleteFramebuffers>("glDeleteFramebuffers");
@@ -175,6 +181,9 @@ void LateGl::Hooks::take_all() {
     take<epoxy_glClientWaitSync>("glClientWaitSync", wait_for);
     take<epoxy_glDeleteSync>("glDeleteSync", delete_fence);
     take<epoxy_glFlush>("glFlush", flush);
+    take<epoxy_glBeginQuery>("glBeginQuery", begin_query);
+    take<epoxy_glEndQuery>("glEndQuery", end_query);
+    take<epoxy_glGetQueryObjectui64v>("glGetQueryObjectui64v", query_result);
 }
 
 LateGl::LateGl(unsigned seed, Lie lie) : lie_(lie), random_(seed) {
@@ -190,11 +199,24 @@ LateGl::~LateGl() {
     late = nullptr;
 }
 
-void LateGl::add(std::function<void()> run, const void* fence) {
-    list_.push_back({std::move(run), fence});
+void LateGl::add(std::function<void()> run, Mark mark) {
+    list_.push_back({std::move(run), mark});
     if (random_() % 64 == 0) // the device gets around to some of it
         for (size_t count = random_() % list_.size(); count > 0; --count)
             run_next();
+}
+
+/// The driver itself may be late as well, so it is to be done with what comes before the mark.
+LateGl::Mark LateGl::add_mark() {
+    const Mark mark = ++last_mark_;
+    pending_marks_.insert(mark);
+    add([] { real<epoxy_glFinish>(); }, mark);
+    return mark;
+}
+
+void LateGl::run_until(Mark mark) {
+    while (pending_marks_.contains(mark))
+        run_next();
 }
 
 void LateGl::run_next() {
@@ -202,7 +224,7 @@ void LateGl::run_next() {
         first_shader_ = list_.end();
     const Command next = std::move(list_.front());
     list_.pop_front();
-    pending_fences_.erase(next.fence);
+    pending_marks_.erase(next.mark);
     next.run();
 }
 
@@ -221,7 +243,7 @@ void LateGl::add_shader(std::function<void()> run) {
         real<epoxy_glFinish>();
         --shaders_;
     };
-    list_.push_back({run_and_finish, nullptr});
+    list_.push_back({run_and_finish});
     most_shaders_ = std::max(most_shaders_, ++shaders_);
     if (first_shader_ == list_.end())
         first_shader_ = std::prev(list_.end());
@@ -240,18 +262,17 @@ void LateGl::add_copy(std::function<void()> run, GLuint from, GLuint to, GLintpt
     if (const auto mapped = mapped_.find(to); mapped != mapped_.end())
         std::memset(mapped->second + offset, kRubbish, size_t(bytes));
     if (unordered_.contains(from) && first_shader_ != list_.end())
-        list_.insert(first_shader_, {std::move(run), nullptr});
+        list_.insert(first_shader_, {std::move(run)});
     else
         add(std::move(run));
 }
 
-GLenum LateGl::wait(const void* fence) {
-    if (lie_ == Lie::FencesArePassed || !pending_fences_.contains(fence))
+GLenum LateGl::wait(Mark fence) {
+    if (lie_ == Lie::FencesArePassed || !pending_marks_.contains(fence))
         return GL_ALREADY_SIGNALED;
     if (random_() % 3 == 0)
         return GL_TIMEOUT_EXPIRED; // whoever waits asks again
-    while (pending_fences_.contains(fence))
-        run_next();
+    run_until(fence);
     return GL_CONDITION_SATISFIED;
 }
 

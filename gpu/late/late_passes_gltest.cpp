@@ -22,7 +22,12 @@ namespace {
 
 constexpr size_t kBatches = 10, kRays = 1500;
 
-class LatePassesGl : public test::OnGl, public testing::WithParamInterface<bool> {
+struct LateWay {
+    bool compute;
+    bool software; // as a software renderer's passes are run, which are not timed by queries
+};
+
+class LatePassesGl : public test::OnGl, public testing::WithParamInterface<LateWay> {
 protected:
     void SetUp() override {
         OnGl::SetUp();
@@ -36,6 +41,7 @@ protected:
         top = build_top_level(pages, pages.size());
         device = gl->info();
         device.takes_host_pages = false;
+        device.is_software = device.is_software && GetParam().software;
     }
 
     std::unique_ptr<Tracer> make_tracer(GlState& state) {
@@ -45,7 +51,7 @@ protected:
         for (const Page& page : pages)
             largest = std::max(largest, page.bytes());
         plan.pool_bytes = top.room() + 8 * largest;
-        auto made = Tracer::create(plan, {.variants = default_variants(device, GetParam())}, device,
+        auto made = Tracer::create(plan, {.variants = default_variants(device, GetParam().compute)}, device,
                                    state.kernels, bounds, pages, top);
         EXPECT_TRUE(made) << made.error().message;
         return made ? std::move(*made) : nullptr;
@@ -111,8 +117,13 @@ protected:
     TopLevel top;
     DeviceInfo device;
 };
-INSTANTIATE_TEST_SUITE_P(Kernel, LatePassesGl, testing::Bool(),
-                         [](const auto& p) { return p.param ? "Compute" : "Fragment"; });
+INSTANTIATE_TEST_SUITE_P(Kernel, LatePassesGl,
+                         testing::Values(LateWay{false, true}, LateWay{false, false},
+                                         LateWay{true, true}, LateWay{true, false}),
+                         [](const auto& p) {
+                             return std::string(p.param.compute ? "Compute" : "Fragment") +
+                                    (p.param.software ? "" : "OfGpu");
+                         });
 
 TEST_P(LatePassesGl, AnswerAsPassesOneByOneDo) {
     const auto expected = one_by_one(/* moves= */ true);
@@ -130,7 +141,7 @@ TEST_P(LatePassesGl, TheTestSeesAFenceThatIsNotWaitedFor) {
 }
 
 TEST_P(LatePassesGl, TheTestSeesABarrierThatIsMissing) {
-    if (!GetParam())
+    if (!GetParam().compute)
         GTEST_SKIP() << "what a fragment shader draws needs no barrier";
     EXPECT_NE(late(1, /* moves= */ false, LateGl::Lie::BarriersDoNothing), one_by_one(false));
 }

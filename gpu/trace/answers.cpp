@@ -45,6 +45,9 @@ void AnswerPixels::draw(size_t rays) {
     glDisable(GL_DEPTH_TEST);
     glDisable(GL_BLEND);
     glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+void AnswerPixels::begin_read(size_t rays) {
     if (!read_back_)
         return;
     glBindBuffer(GL_PIXEL_PACK_BUFFER, read_back_->id());
@@ -122,9 +125,14 @@ void AnswerWords::dispatch(GLuint program, size_t rays, size_t group_rays, size_
     }
     glDispatchCompute(GLuint((all + group_rays - 1) / group_rays), 1, 1);
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+}
+
+void AnswerWords::begin_read(size_t rays, bool may_wait) {
     if (!read_back_)
         return;
-    for (int number = 0; number < 4; ++number)
+    const size_t all = whole_blocks(rays);
+    planes_copied_ = may_wait ? 4 : 3;
+    for (int number = 0; number < planes_copied_; ++number)
         glCopyNamedBufferSubData(buffer_.id(), read_back_->id(), GLintptr(offset_of(number)),
                                  GLintptr(offset_of(number)), GLsizeiptr(all * sizeof(uint32_t)));
     read_back_->end_copies();
@@ -134,7 +142,9 @@ void AnswerWords::read_plane(int number, size_t slots, std::vector<uint32_t>& to
     assert(number >= 0 && number < 4 && slots <= rays_);
     grow(to, slots);
     const size_t bytes = slots * sizeof(uint32_t);
-    if (read_back_)
+    if (read_back_ && number >= planes_copied_)
+        std::fill_n(to.begin(), slots, uint32_t(OVC_NO_LEAF));
+    else if (read_back_)
         std::memcpy(to.data(), read_back_->bytes().data() + offset_of(number), bytes);
     else
         glGetNamedBufferSubData(buffer_.id(), GLintptr(offset_of(number)), GLsizeiptr(bytes),

@@ -107,13 +107,15 @@ inline size_t whole_blocks(size_t n) {
 
 /// Answers of the fragment kernel. This class and AnswerWords have room for `rays` rays, whole
 /// blocks. draw() and dispatch() start the pass: its program is in use and its inputs are bound.
-/// read() waits for the pass; if answers are copied behind it, it does not wait for later passes.
+/// begin_read(), called next, has the answers copied behind the pass, where that is wanted. read()
+/// waits for the pass, and not for later ones if the answers are copied behind it.
 class AnswerPixels {
 public:
     AnswerPixels(Ledger& ledger, uint32_t rays, bool copied_behind);
     /// False where the driver cannot draw to such a texture.
     bool complete() const { return framebuffer_.complete(); }
     void draw(size_t rays);
+    void begin_read(size_t rays);
     /// Reads the answers of the first rays.
     void read(Answers& answers, size_t rays);
 
@@ -134,6 +136,8 @@ public:
     /// group_rays: of a work group, on average. lane_rays: that a subgroup claims for each of its
     /// lanes at a time; 0: it claims none.
     void dispatch(GLuint program, size_t rays, size_t group_rays, size_t lane_rays);
+    /// may_wait: rays may wait for pages, so their answers may name leaves.
+    void begin_read(size_t rays, bool may_wait);
     /// Reads the answers of the first slots.
     void read(Answers& answers, size_t slots);
 
@@ -147,6 +151,7 @@ private:
     gl::Buffer buffer_;
     gl::BufferTexture texture_;
     std::optional<ReadBack> read_back_;
+    int planes_copied_ = 4; // behind the pass; without the last one, no answer names a leaf
 };
 
 } // namespace ovc

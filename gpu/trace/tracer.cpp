@@ -386,6 +386,10 @@ Result<Done> Tracer::launch(PassSlot& slot) {
         slot.pixels->draw(slot.sent->size());
     if (!device_.is_software)
         glEndQuery(GL_TIME_ELAPSED);
+    if (slot.words)
+        slot.words->begin_read(slot.sent->slots(), may_wait());
+    else
+        slot.pixels->begin_read(slot.sent->size());
     glPopDebugGroup();
     if (device_.passes_in_flight == 1)
         glFinish();

@@ -72,5 +72,17 @@ TEST_P(LateTwoLevelGl, ACallAfterOneThatWasCancelledAnswersAsEver) {
     test::expect_answers(*structure, rays, expected);
 }
 
+TEST_P(LateTwoLevelGl, AStreamThatIsStoppedStops) {
+    const auto structure = build(soup, {.leaf_triangles = 100, .compute = GetParam()});
+    ASSERT_TRUE(structure);
+    begin_late(3);
+    test::Spawner host(rays, 100);
+    host.stop_after = 150;
+    const Result<Done> stopped = structure->stream(host);
+    ASSERT_FALSE(stopped) << host.answers << " answers";
+    EXPECT_EQ(stopped.error().kind, ErrorKind::Cancelled);
+    EXPECT_LT(host.answers, rays.size());
+}
+
 } // namespace
 } // namespace ovc

@@ -56,7 +56,7 @@ public:
 
     /// Runs passes over at most max_rays rays of all the waves. Pages that other rays wait for are
     /// moved in before the passes where few rays are ready, and beside them where few are left.
-    /// meanwhile() -> bool runs beside each pass, and returns false to make it the last one.
+    /// meanwhile() -> bool runs beside each pass, until it returns false: no pass begins then.
     template <class Meanwhile>
     Result<Done> run(size_t max_rays, Meanwhile&& meanwhile) {
         // Rays that are ready join the next pass, most of which then consists of rays that waited
@@ -95,7 +95,7 @@ public:
                 resolve(*std::exchange(answered, nullptr));
             if (tracing_.scene.store)
                 passes_.read_ahead(worth_moving());
-            goes_on = meanwhile() && goes_on;
+            goes_on = goes_on && meanwhile();
             const bool enough = ready() >= passes_.few_rays();
             load(batch(step + 1),
                  goes_on && enough ? std::min(passes_.part_rays(ready()), max_rays) : 0);

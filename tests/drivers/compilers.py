@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """Validates the kernels' sources with glslang, for OpenGL 4.5 and 4.6 core, and makes SPIR-V of
-them, which spirv-val validates.
+them, which spirv-val validates. Finds literals beyond their type's range, which glslang takes and
+NVIDIA's compiler refuses.
 
 usage: compilers.py KERNEL_SOURCES [FOLDER]
 
@@ -9,6 +10,7 @@ KERNEL_SOURCES is the program build/bin/kernel_sources. Sources and SPIR-V stay 
 given. Without glslang-tools or spirv-tools the script exits with 77.
 """
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -21,8 +23,18 @@ def refusal_of(*command):
     return done.stdout + done.stderr if done.returncode else ""
 
 
+LITERAL = re.compile(r"(?<![\w.])(\d+\.\d*(?:[eE][-+]?\d+)?|\d+[eE][-+]?\d+)(lf|LF|f|F)?")
+
+
+def out_of_range(text):
+    """Returns the literals that are no normal float, and do not say that they are doubles."""
+    numbers = [m for m in LITERAL.finditer(re.sub("//.*", "", text)) if m[2] not in ("lf", "LF")]
+    return [m[0] for m in numbers if float(m[1]) and not 1.17e-38 < float(m[1]) < 3.4028236e38]
+
+
 def check(source):
     """Yields for each compiler its name and its refusal of a source."""
+    yield "literals", " ".join(out_of_range(source.read_text()))
     yield "GLSL 4.50", refusal_of("glslangValidator", source)
     later = source.with_name("later_" + source.name)
     later.write_text(source.read_text().replace("#version 450 core", "#version 460 core"))
@@ -47,6 +59,9 @@ def main():
         broken.write_text("#version 450 core\nvoid main() { nothing(); }\n")
         if not refusal_of("glslangValidator", broken):
             print("glslangValidator takes a source that calls a function that is not there")
+            return 1
+        if not out_of_range("double d = 1.0e300;") or out_of_range("double d = 1.0e300lf + 2.0;"):
+            print("literals beyond the range of floats are not told from others")
             return 1
         broken.unlink()
         sources = sorted(path for path in folder.iterdir()
