@@ -11,7 +11,7 @@ uvec4 portal_texel(int i) { return OVC_TEXEL(portals, i); }
 // Pushes a word that leads to unit 0. It lies below the words of the part that the ray comes to.
 void push_mark(inout Descent d) {
     bool store = !is_none(d.top);
-#if OVC_STACK_REGISTERS
+#if OVC_STACK == 1
     d.lost = d.lost || (store && !is_none(d.stack[OVC_STACK_DEPTH - 1]));
     Word above = d.top;
     for (int i = 0; i < OVC_STACK_DEPTH; ++i) {
@@ -23,7 +23,7 @@ void push_mark(inout Descent d) {
     d.lost = d.lost || (store && d.height >= OVC_STACK_DEPTH - 1);
     if (store && !d.lost) {
         ++d.height;
-        d.stack[d.height] = d.top;
+        OVC_STACK_AT(d, d.height) = d.top;
     }
 #endif
     d.top = word_of(0, 4);

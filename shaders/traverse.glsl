@@ -34,12 +34,21 @@ Word with_to_come(Word word, uint to_come) { return uvec2(word.x, to_come); }
 #endif
 bool is_none(Word word) { return to_come_of(word) == 0u; }
 
+#if OVC_STACK == 2
+shared Word stack_words[OVC_STACK_DEPTH * OVC_GROUP_SIZE]; // neighbouring lanes in different banks
+#define OVC_STACK_AT(d, i) stack_words[(i) * OVC_GROUP_SIZE + int(gl_LocalInvocationIndex)]
+#else
+#define OVC_STACK_AT(d, i) d.stack[i]
+#endif
+
 // Where a ray is in the tree.
 struct Descent {
     int unit;   // to go to next; under portals 0: the top-level tree; negative: the portal -unit
     Word top;   // the word on top of the stack; none: the stack is empty
-    int height; // of the words below `top`, less one, if the stack is an array
+    int height; // of the words below `top`, less one, unless they are in registers
+#if OVC_STACK != 2
     Word stack[OVC_STACK_DEPTH]; // in registers the first is the word below `top`
+#endif
     bool done;
     bool lost; // the stack was too short, so the ray may have missed triangles
 };
@@ -62,7 +71,7 @@ void advance(inout Descent d, int first_child, Children children, bool leave) {
     bool store = way.more && !empty;
     bool pop = back && (to_come & 0x70u) == 0u; // no more than one was to come
     Word below;
-#if OVC_STACK_REGISTERS
+#if OVC_STACK == 1
     // All words move: that takes two selections a word and no comparison.
     below = d.stack[0];
     d.lost = d.lost || (store && !is_none(d.stack[OVC_STACK_DEPTH - 1]));
@@ -76,10 +85,10 @@ void advance(inout Descent d, int first_child, Children children, bool leave) {
 #else
     d.lost = d.lost || (store && d.height >= OVC_STACK_DEPTH - 1);
     below = Word(0u);
-    if (store)
-        d.stack[d.height + 1] = d.top;
+    if (store && !d.lost)
+        OVC_STACK_AT(d, d.height + 1) = d.top;
     if (pop && d.height >= 0)
-        below = d.stack[d.height];
+        below = OVC_STACK_AT(d, d.height);
     d.height += store ? 1 : (pop && d.height >= 0 ? -1 : 0);
 #endif
     d.top = way.more ? word : (pop ? below : (back ? rest : d.top));
@@ -171,7 +180,7 @@ void set_ray(inout Packet packet, int k, Tree tree, vec3 org, Direction directio
 void start(inout Descent d, Tree tree) {
     d.unit = tree.start.x;
     d.height = tree.start.y;
-#if OVC_STACK_REGISTERS
+#if OVC_STACK == 1
     for (int i = 0; i < OVC_STACK_DEPTH; ++i)
         d.stack[i] = Word(tree.start.z);
 #endif

@@ -168,8 +168,11 @@ public:
     /// offset: a multiple of GL_TEXTURE_BUFFER_OFFSET_ALIGNMENT.
     void show(const Buffer& buffer, GLenum format, uint64_t offset, uint64_t bytes) {
         assert(offset + bytes <= buffer.bytes());
-        window_ = {buffer.id(), GLintptr(offset), GLsizeiptr(bytes)};
-        glTextureBufferRange(id(), format, buffer.id(), GLintptr(offset), GLsizeiptr(bytes));
+        show(buffer.id(), format, offset, bytes);
+    }
+    void show(GLuint buffer, GLenum format, uint64_t offset, uint64_t bytes) {
+        window_ = {buffer, GLintptr(offset), GLsizeiptr(bytes)};
+        glTextureBufferRange(id(), format, buffer, GLintptr(offset), GLsizeiptr(bytes));
     }
     /// Binds the window's RGBA32UI texels for a kernel to read.
     void bind(GLuint unit, TexelReads reads) const {

@@ -142,7 +142,7 @@ std::string ShaderConfig::defines() const {
                        "#define OVC_EACH_BUFFER(do_with) {}\n"
                        "#define OVC_BUFFER_BITS {}\n"
                        "#define OVC_STACK_DEPTH {}\n"
-                       "#define OVC_STACK_REGISTERS {}\n"
+                       "#define OVC_STACK {}\n"
                        "#define OVC_PACKET {}\n"
                        "#define OVC_CLAIMS {}\n"
                        "#define OVC_REFILL {}\n"
@@ -152,7 +152,7 @@ std::string ShaderConfig::defines() const {
                        "#define OVC_MAX_ROUNDS {}\n"
                        "#define OVC_COUNTS {}\n",
                        any_hit, certify, portals, float_pairs, may_wait, tell_active, loose_pairs,
-                       pool_buffers, each_buffer, buffer_bits, stack_depth, stack_registers, packet,
+                       pool_buffers, each_buffer, buffer_bits, stack_depth, int(stack), packet,
                        claims, refill, branches, int(reads), group_size, max_rounds, counts);
 }
 

@@ -18,6 +18,10 @@ namespace ovc {
 /// would end the loops a little later (Workaround::CountedRounds).
 inline constexpr uint32_t kMaxCountedRounds = 65000;
 
+/// Where a ray's stack lies: in an array of its invocation, which a GPU keeps in memory, in
+/// registers, or in memory that a work group of the compute kernel shares.
+enum class StackPlace { Array, Registers, Shared };
+
 /// The choice of a kernel, with every switch of shaders/config.glsl, as a value. The tracer derives
 /// it from what the query, the pages and the driver need.
 struct ShaderConfig {
@@ -32,7 +36,7 @@ struct ShaderConfig {
     uint32_t pool_buffers = 1;
     uint32_t buffer_bits = 25;
     uint32_t stack_depth = 16;
-    bool stack_registers = true;
+    StackPlace stack = StackPlace::Registers;
     uint32_t packet = 1; // rays that an invocation traces together
     bool claims = false; // subgroups claim their rays from a counter
     bool refill = false; // a lane takes the next packet when its own is done; with claims

@@ -64,8 +64,8 @@ private:
     size_t most_shaders_ = 0;
     Mark last_mark_ = 0;
     std::set<Mark> pending_marks_;
-    GLuint query_ = 0;                  // that has begun
-    std::map<GLuint, Mark> query_ends_; // by the names of queries
+    GLuint query_ = 0;                    // that has begun
+    std::map<GLuint, Mark> query_ends_;   // by the names of queries
     std::map<GLuint, std::byte*> mapped_; // buffers that this process reads
     GLuint pack_buffer_ = 0;
     std::map<GLuint, GLuint> texture_buffers_; // the buffer of a texture

@@ -51,8 +51,8 @@ protected:
         for (const Page& page : pages)
             largest = std::max(largest, page.bytes());
         plan.pool_bytes = top.room() + 8 * largest;
-        auto made = Tracer::create(plan, {.variants = default_variants(device, GetParam().compute)}, device,
-                                   state.kernels, bounds, pages, top);
+        auto made = Tracer::create(plan, {.variants = default_variants(device, GetParam().compute)},
+                                   device, state.kernels, bounds, pages, top);
         EXPECT_TRUE(made) << made.error().message;
         return made ? std::move(*made) : nullptr;
     }

@@ -124,7 +124,7 @@ void AnswerWords::dispatch(GLuint program, size_t rays, size_t group_rays, size_
         glProgramUniform1i(program, OVC_LOCATION_LANE_RAYS, GLint(lane_rays));
     }
     glDispatchCompute(GLuint((all + group_rays - 1) / group_rays), 1, 1);
-    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT | GL_CLIENT_MAPPED_BUFFER_BARRIER_BIT);
 }
 
 void AnswerWords::begin_read(size_t rays, bool may_wait) {
@@ -142,13 +142,18 @@ void AnswerWords::read_plane(int number, size_t slots, std::vector<uint32_t>& to
     assert(number >= 0 && number < 4 && slots <= rays_);
     grow(to, slots);
     const size_t bytes = slots * sizeof(uint32_t);
-    if (read_back_ && number >= planes_copied_)
+    if (read_back_ && number >= planes_copied_) {
         std::fill_n(to.begin(), slots, uint32_t(OVC_NO_LEAF));
-    else if (read_back_)
-        std::memcpy(to.data(), read_back_->bytes().data() + offset_of(number), bytes);
-    else
+    } else if (read_back_) {
+        const std::byte* const from = read_back_->bytes().data() + offset_of(number);
+        parallel_for(slots, kAnswerGrain, [&](size_t first, size_t last) {
+            std::memcpy(&to[first], from + first * sizeof(uint32_t),
+                        (last - first) * sizeof(uint32_t));
+        });
+    } else {
         glGetNamedBufferSubData(buffer_.id(), GLintptr(offset_of(number)), GLsizeiptr(bytes),
                                 to.data());
+    }
 }
 
 void AnswerWords::read(Answers& answers, size_t slots) {

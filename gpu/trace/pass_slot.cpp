@@ -8,10 +8,17 @@ void PassSlot::make_answers(Ledger& ledger, bool compute, bool copied_behind) {
         return;
     words.reset();
     pixels.reset();
-    if (compute)
-        words.emplace(ledger, max_slots, copied_behind);
-    else
+    names.reset();
+    if (!compute) {
         pixels.emplace(ledger, max_rays, copied_behind);
+        return;
+    }
+    words.emplace(ledger, max_slots, copied_behind);
+    if (copied_behind)
+        names.emplace(ray_buffer.bytes(), GL_MAP_READ_BIT);
+    if (names && names->memory().empty())
+        names.reset();
+    name_words.show(names ? names->id() : ray_buffer.id(), GL_R32UI, 0, ray_buffer.bytes());
 }
 
 } // namespace ovc

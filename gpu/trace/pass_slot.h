@@ -3,6 +3,7 @@
 // two slots the next pass can be sent while answers of the one before are read.
 #pragma once
 
+#include "gpu/gl/mapped_buffer.h"
 #include "gpu/trace/answers.h"
 #include "gpu/trace/sent_rays.h"
 #include "gpu/tuning/kernel_variant.h"
@@ -18,7 +19,8 @@ struct PassSlot {
           max_slots(batch_rays + parted_rays),
           ray_buffer(ledger, uint64_t(batch_rays) * sizeof(RayState), "rays") {}
 
-    /// Makes the buffer for answers of a kernel in place of another kernel's. No pass is under way.
+    /// Makes the buffers for answers of a kernel in place of another kernel's. No pass is under
+    /// way.
     void make_answers(Ledger& ledger, bool compute, bool copied_behind);
     /// False where the driver cannot draw to such answers.
     bool is_complete() const { return !pixels || pixels->complete(); }
@@ -27,9 +29,13 @@ struct PassSlot {
     const uint32_t max_slots; // the same with those that packets part
     gl::Buffer ray_buffer;
     gl::BufferTexture rays;
-    gl::BufferTexture ray_words;        // the same, for the kernel to write names
     std::optional<AnswerPixels> pixels; // of the fragment kernel
     std::optional<AnswerWords> words;   // of the compute kernel
+    /// Memory of this process that the compute kernel writes candidates' names to, as to the places
+    /// of their rays: reading the ray buffer would wait for the pass behind. None: the ray buffer
+    /// itself is written, because passes run one by one or the driver gives no such memory.
+    std::optional<gl::MappedBuffer> names;
+    gl::BufferTexture name_words; // of these, or of the ray buffer
     gl::TimeQuery time;
 
     // Of the pass that was sent last:

@@ -2,10 +2,13 @@
 // Writes rays in the layout that the kernel reads.
 #include "gpu/trace/sent_rays.h"
 
+#include "core/system/parallel.h"
+
 #include <algorithm>
 #include <bit>
 #include <cassert>
 #include <cstring>
+#include <numeric>
 #include <type_traits>
 
 namespace ovc {
@@ -144,16 +147,31 @@ size_t SentRays::put(size_t at, const RayStates& states, uint32_t which) {
     return i - at;
 }
 
-void SentRays::move_up(size_t to, size_t from, size_t count) {
-    assert(to <= from);
-    if (to == from)
-        return;
-    const auto move = [&](auto& all) {
-        std::copy_n(all.begin() + ptrdiff_t(from), count, all.begin() + ptrdiff_t(to));
+void SentRays::close_holes(size_t block_rays, std::span<const size_t> counts) {
+    std::vector<size_t> places(counts.size());
+    std::exclusive_scan(counts.begin(), counts.end(), places.begin(), size_t(0));
+    const auto close = [&](auto& all, auto& copy) {
+        copy.resize(std::max(copy.size(), all.size()));
+        parallel_for(counts.size(), 8, [&](size_t first, size_t last) {
+            for (size_t b = first; b < last; ++b)
+                std::copy_n(all.begin() + ptrdiff_t(b * block_rays), counts[b],
+                            copy.begin() + ptrdiff_t(places[b]));
+        });
+        all.swap(copy);
     };
-    std::visit(move, rays_);
-    if (form_.keeps_times)
-        move(times_);
+    if (!counts.empty() && places.back() < (counts.size() - 1) * block_rays) {
+        std::visit(
+            [&](auto& all) {
+                using All = std::decay_t<decltype(all)>;
+                if (!std::holds_alternative<All>(other_rays_))
+                    other_rays_.emplace<All>();
+                close(all, std::get<All>(other_rays_));
+            },
+            rays_);
+        if (form_.keeps_times)
+            close(times_, other_times_);
+    }
+    set_size(counts.empty() ? 0 : places.back() + counts.back());
 }
 
 /// Returns ray i in the frame of the scene or of the top-level tree.

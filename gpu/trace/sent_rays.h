@@ -71,10 +71,9 @@ public:
     /// Writes those of the states that have a bit in `which`, to the places from `at` on; returns
     /// their number. Several threads may write to different places.
     size_t put(size_t at, const RayStates& states, uint32_t which);
-    /// Moves `count` rays to places before.
-    void move_up(size_t to, size_t from, size_t count);
-    /// Sets how many rays there are, of those that there is room for.
-    void set_size(size_t rays);
+    /// Closes the holes between blocks of `block_rays` places, of which each has counts[b] rays at
+    /// its beginning: they come to follow each other, in order. Sets how many rays there are.
+    void close_holes(size_t block_rays, std::span<const size_t> counts);
     size_t size() const { return size_; }
 
     /// Whether all rays ask if anything is hit, as whoever put them says.
@@ -99,15 +98,20 @@ public:
     SentRays first(size_t rays) const;
 
 private:
+    /// Sets how many rays there are, of those that there is room for.
+    void set_size(size_t rays);
     LocalRay local_ray_of(size_t i) const;
 
     RayForm form_;
     LanesFrame frame_;
     size_t size_ = 0;
     bool all_any_hit_ = false;
-    /// In whole blocks.
-    std::variant<std::vector<LocalRay>, std::vector<ResumedRay>, std::vector<RayState>> rays_;
+    using Rays =
+        std::variant<std::vector<LocalRay>, std::vector<ResumedRay>, std::vector<RayState>>;
+    Rays rays_; // in whole blocks
     std::vector<LocalTime> times_;
+    Rays other_rays_; // to which close_holes() copies them
+    std::vector<LocalTime> other_times_;
     std::vector<Parted> parted_;
 };
 

@@ -8,6 +8,7 @@
 #include "kdtree/restart.h"
 #include "kdtree/test_soups.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -157,10 +158,10 @@ TEST(SentRays, AreThoseOfABlockWithoutHoles) {
     const std::vector<Ray> rays = rays_with(none, 16);
     SentRays sent;
     sent.reset(form, 16);
-    EXPECT_EQ(sent.put(0, eight(std::span(rays).first(8)), 0b1001), 2u);
-    EXPECT_EQ(sent.put(8, eight(std::span(rays).subspan(8)), 0b0110), 2u);
-    sent.move_up(2, 8, 2);
-    sent.set_size(4);
+    const size_t counts[] = {sent.put(0, eight(std::span(rays).first(8)), 0b1001),
+                             sent.put(8, eight(std::span(rays).subspan(8)), 0b0110)};
+    EXPECT_THAT(counts, testing::Each(2u));
+    sent.close_holes(8, counts);
     const RayState states[] = {{.ray = rays[0], .skip = 0},
                                {.ray = rays[3], .skip = 3},
                                {.ray = rays[9], .skip = 1},

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cstring>
 #include <utility>
 
 namespace ovc {
@@ -20,6 +21,8 @@ namespace {
 constexpr uint32_t kMaxBlocks = 2048; // half a million rays; a pass gains nothing from more
 constexpr uint32_t kMaxBlocksInSoftware = 512; // fewer, as llvmpipe clears the memory it allocates
 constexpr uint32_t kMaxWordsInRegisters = 32;  // Workaround::ShortRegisterStack
+// With words of 8 bytes in groups of 128 these are the 32 KiB that every device has.
+constexpr uint32_t kMaxSharedWords = 32;
 constexpr size_t kMaxLostShare =
     256; // if more than one ray in so many is lost, kernels go on longer
 // The max rays of a lane in a share, if there are shares for so many lanes of each thread: 8 of the
@@ -124,7 +127,6 @@ Result<Done> Tracer::set_up() {
         portals_.show(*portal_buffer_, GL_RGBA32UI, 0, portal_buffer_->bytes());
     for (PassSlot& slot : slots_) {
         slot.rays.show(slot.ray_buffer, GL_RGBA32UI, 0, slot.ray_buffer.bytes());
-        slot.ray_words.show(slot.ray_buffer, GL_R32UI, 0, slot.ray_buffer.bytes());
     }
     pool_.show();
     upload_top_level();
@@ -287,8 +289,16 @@ RayForm Tracer::form() const {
 
 /// Returns how many words the kernel's stack has.
 uint32_t Tracer::stack_words(const KernelVariant& variant) const {
-    const bool is_short = variant.register_words > 0 && !long_stacks_;
-    return is_short ? std::min(stack_depth_, variant.register_words) : stack_depth_;
+    const bool is_short = variant.stack_words > 0 && !long_stacks_;
+    return is_short ? std::min(stack_depth_, variant.stack_words) : stack_depth_;
+}
+
+/// Returns where the kernel's stack of so many words lies.
+StackPlace Tracer::stack_place(const KernelVariant& variant, uint32_t words) const {
+    const bool fits = variant.stack == StackPlace::Shared
+                          ? words <= kMaxSharedWords
+                          : words <= kMaxWordsInRegisters || !registers_lose_words_;
+    return fits ? variant.stack : StackPlace::Array;
 }
 
 /// Returns the configuration of the kernel for rays of a kind.
@@ -308,8 +318,7 @@ ShaderConfig Tracer::shader_config(RayKind kind, const KernelVariant& variant) c
         config.max_rounds = kMaxCountedRounds;
     config.compute = variant.compute;
     config.stack_depth = stack_words(variant);
-    config.stack_registers = variant.register_words > 0 &&
-                             (config.stack_depth <= kMaxWordsInRegisters || !registers_lose_words_);
+    config.stack = stack_place(variant, config.stack_depth);
     config.branches = variant.branches;
     config.reads = variant.reads;
     config.group_size = variant.group_size;
@@ -362,7 +371,7 @@ Result<Done> Tracer::launch(PassSlot& slot) {
     pool_.bind(config.reads);
     slot.rays.bind(OVC_BINDING_RAYS, config.reads);
     if (config.compute)
-        glBindImageTexture(OVC_BINDING_NAMES, slot.ray_words.id(), 0, GL_FALSE, 0, GL_WRITE_ONLY,
+        glBindImageTexture(OVC_BINDING_NAMES, slot.name_words.id(), 0, GL_FALSE, 0, GL_WRITE_ONLY,
                            GL_R32UI);
     if (has_portals())
         portals_.bind(OVC_BINDING_PORTALS, config.reads);
@@ -444,9 +453,13 @@ void Tracer::read_lists(const PassSlot& slot, Answers& answers) {
         if (last == first)
             continue;
         answers.lists.resize(std::max(answers.lists.size(), last * answers.ray_texels));
-        glGetNamedBufferSubData(slot.ray_buffer.id(), GLintptr(first * ray_bytes),
-                                GLsizeiptr((last - first) * ray_bytes),
-                                &answers.lists[first * answers.ray_texels]);
+        uvec4* const to = &answers.lists[first * answers.ray_texels];
+        const size_t bytes = (last - first) * ray_bytes;
+        if (slot.names)
+            std::memcpy(to, slot.names->memory().data() + first * ray_bytes, bytes);
+        else
+            glGetNamedBufferSubData(slot.ray_buffer.id(), GLintptr(first * ray_bytes),
+                                    GLsizeiptr(bytes), to);
         first = last;
     }
 }

@@ -167,6 +167,7 @@ private:
         return variant.packets && kind.coherent && !kind.has_portals();
     }
     uint32_t stack_words(const KernelVariant& variant) const;
+    StackPlace stack_place(const KernelVariant& variant, uint32_t words) const;
     Result<Done> launch(PassSlot& slot);
     Result<Done> collect(PassSlot& slot, Answers& answers);
     void read(PassSlot& slot, Answers& answers);

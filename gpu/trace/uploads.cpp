@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gpu/trace/uploads.h"
 
+#include "core/system/parallel.h"
+
 #include <algorithm>
 #include <cassert>
 #include <cstring>
@@ -35,6 +37,7 @@ void Uploads::write(const gl::Buffer& buffer, uint64_t to, uint64_t bytes,
 
 void Uploads::copy(std::span<const std::byte> bytes, const gl::Buffer& buffer) const {
     constexpr uint64_t kPartBytes = 4 << 20;
+    constexpr size_t kGrain = 256 << 10; // bytes that a task copies
     assert(bytes.size() <= buffer.bytes());
     if (!staged_) {
         glNamedBufferSubData(buffer.id(), 0, GLsizeiptr(bytes.size()), bytes.data());
@@ -44,8 +47,9 @@ void Uploads::copy(std::span<const std::byte> bytes, const gl::Buffer& buffer) c
     for (uint64_t begin = 0; begin < bytes.size(); begin += part_bytes) {
         const auto part = bytes.subspan(begin, std::min(part_bytes, bytes.size() - begin));
         write(buffer, begin, part.size(), [&](std::span<std::byte> memory) {
-            // Not by tasks: this thread could come to do others' tasks before it starts the pass.
-            std::memcpy(memory.data(), part.data(), part.size());
+            parallel_for(part.size(), kGrain, [&](size_t first, size_t last) {
+                std::memcpy(memory.data() + first, part.data() + first, last - first);
+            });
         });
     }
 }

@@ -10,9 +10,10 @@
 namespace ovc {
 namespace {
 
-// Each word is a register (two with several buffers) and costs 1 % of the time on llvmpipe; of a
-// million rays at the Stanford dragon thirty need more words (docs/decisions/0012).
-constexpr uint32_t kRegisterWords = 8;
+// Words of a stack. Each word in registers is one (two with several buffers) and costs 1 % of the
+// time on llvmpipe; of a million rays at the Stanford dragon thirty need more words
+// (docs/decisions/0012).
+constexpr uint32_t kRegisterWords = 8, kSharedWords = 12;
 constexpr std::array<std::string_view, 3> kReads{"textures", "images", "storage"};
 
 /// Takes "group=64" apart. Returns whether the word is `name` with a number.
@@ -23,6 +24,16 @@ bool take_number(std::string_view word, std::string_view name, uint32_t& number)
     const char* const last = word.data() + word.size();
     const auto [end, error] = std::from_chars(first, last, number);
     return error == std::errc() && end == last && first != last;
+}
+
+bool take_stack(std::string_view word, KernelVariant& variant) {
+    if (take_number(word, "registers", variant.stack_words))
+        variant.stack = StackPlace::Registers;
+    else if (take_number(word, "shared", variant.stack_words))
+        variant.stack = StackPlace::Shared;
+    else
+        return false;
+    return variant.stack_words > 0 && variant.stack_words <= 64;
 }
 
 bool take_word(std::string_view word, KernelVariant& variant) {
@@ -38,18 +49,17 @@ bool take_word(std::string_view word, KernelVariant& variant) {
     else if (word == "branches" || word == "both-sides")
         variant.branches = word == "branches";
     else if (word == "array")
-        variant.register_words = 0;
+        variant.stack = StackPlace::Array, variant.stack_words = 0;
     else if (word == "float-pairs")
         variant.float_pairs = true;
     else if (!take_number(word, "group", variant.group_size))
-        return take_number(word, "registers", variant.register_words) &&
-               variant.register_words > 0 && variant.register_words <= 64;
+        return take_stack(word, variant);
     return true;
 }
 
 bool is_sound(const KernelVariant& v) {
     const bool size = v.group_size == 32 || v.group_size == 64 || v.group_size == 128;
-    return size && (v.compute || !(v.packets || v.refill));
+    return size && (v.compute || !(v.packets || v.refill || v.stack == StackPlace::Shared));
 }
 
 } // namespace
@@ -59,7 +69,11 @@ std::string KernelVariant::text() const {
     text += packets ? ",packets" : "";
     text += refill ? ",refill" : "";
     text += branches ? ",branches" : ",both-sides";
-    text += register_words ? format_text(",registers={}", register_words) : ",array";
+    if (stack == StackPlace::Array)
+        text += ",array";
+    else
+        text += format_text(",{}={}", stack == StackPlace::Shared ? "shared" : "registers",
+                            stack_words);
     text += float_pairs ? ",float-pairs" : "";
     return text + "," + std::string(kReads[size_t(reads)]);
 }
@@ -72,28 +86,29 @@ Result<KernelVariant> parse_variant(std::string_view text) {
             return Error{
                 format_text("'{}' is no switch of a kernel, in '{}'; there are compute, "
                             "fragment, group=N, packets, refill, branches, "
-                            "both-sides, registers=N, array, float-pairs, textures, images, "
-                            "storage",
+                            "both-sides, registers=N, shared=N, array, float-pairs, textures, "
+                            "images, storage",
                             rest.substr(0, comma), text)};
         if (comma == rest.size())
             break;
         rest.remove_prefix(comma + 1);
     }
     if (!is_sound(variant))
-        return Error{format_text("no kernel is '{}': group is 32, 64 or 128, and packets and "
-                                 "refill are the compute kernel's",
+        return Error{format_text("no kernel is '{}': group is 32, 64 or 128, and packets, "
+                                 "refill and shared are the compute kernel's",
                                  text)};
     return variant;
 }
 
 ChosenVariants default_variants(const DeviceInfo& device, bool compute) {
     KernelVariant variant{.compute = compute};
+    variant.stack = compute && !device.is_software ? StackPlace::Shared : StackPlace::Registers;
+    variant.stack_words = variant.stack == StackPlace::Shared ? kSharedWords : kRegisterWords;
     if (!device.is_software)
         return ChosenVariants(variant);
     variant.packets = compute;
     variant.refill = compute && device.can_refill();
     variant.branches = false;
-    variant.register_words = kRegisterWords;
     variant.reads = TexelReads::Images;
     ChosenVariants variants(variant);
     for (size_t kind = 0; kind < RayKind::kCount; ++kind)
@@ -117,7 +132,13 @@ std::vector<KernelVariant> neighbours(const KernelVariant& from, const DeviceInf
         if (!(variant == from) && is_sound(variant) && (!variant.refill || device.can_refill()))
             found.push_back(variant);
     };
-    add([](KernelVariant& v) { v.refill = !v.refill; });
+    const auto add_stack = [&](StackPlace place, uint32_t words) {
+        add([&](KernelVariant& v) { v.stack = place, v.stack_words = words; });
+    };
+    if (from.stack != StackPlace::Shared)
+        add_stack(StackPlace::Shared, kSharedWords);
+    if (from.stack != StackPlace::Registers)
+        add_stack(StackPlace::Registers, kRegisterWords);
     add([](KernelVariant& v) { v.float_pairs = !v.float_pairs; });
     for (const TexelReads reads :
          {TexelReads::StorageBuffers, TexelReads::Images, TexelReads::Textures})
@@ -127,11 +148,15 @@ std::vector<KernelVariant> neighbours(const KernelVariant& from, const DeviceInf
             add([&](KernelVariant& v) { v.group_size = size; });
     add([](KernelVariant& v) { v.branches = !v.branches; });
     add([](KernelVariant& v) { v.packets = !v.packets; });
-    add([](KernelVariant& v) { v.register_words = v.register_words ? 0 : kRegisterWords; });
+    add([](KernelVariant& v) { v.refill = !v.refill; });
+    if (from.stack != StackPlace::Array)
+        add_stack(StackPlace::Array, 0);
     if (other_kernel)
         add([](KernelVariant& v) {
             v.compute = !v.compute;
             v.packets = v.refill = false;
+            if (v.stack == StackPlace::Shared)
+                v.stack = StackPlace::Registers, v.stack_words = kRegisterWords;
         });
     return found;
 }
@@ -147,7 +172,8 @@ KernelVariant with_changes(KernelVariant base, const KernelVariant& from,
     take(&KernelVariant::packets);
     take(&KernelVariant::refill);
     take(&KernelVariant::branches);
-    take(&KernelVariant::register_words);
+    take(&KernelVariant::stack);
+    take(&KernelVariant::stack_words);
     take(&KernelVariant::float_pairs);
     take(&KernelVariant::reads);
     return base;

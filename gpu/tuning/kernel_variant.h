@@ -19,17 +19,18 @@ namespace ovc {
 /// Certified answers are the same bits whichever variant a kernel is. Those that a device cannot
 /// run, and switches that mean nothing together, are left out by candidates().
 struct KernelVariant {
-    bool compute = true;         // false: the fragment kernel, which lacks some of the others
-    bool float_pairs = false;    // frames are changed in pairs of floats; else in doubles
-    uint32_t group_size = 64;    // invocations
-    bool packets = false;        // rays that go alike are taken two at a time
-    bool refill = false;         // a lane takes the next ray when its own is done
-    bool branches = true;        // a step runs only the code for its kind of unit
-    uint32_t register_words = 0; // of a stack in registers; 0: it is an array
+    bool compute = true;      // false: the fragment kernel, which lacks some of the others
+    bool float_pairs = false; // frames are changed in pairs of floats; else in doubles
+    uint32_t group_size = 64; // invocations
+    bool packets = false;     // rays that go alike are taken two at a time
+    bool refill = false;      // a lane takes the next ray when its own is done
+    bool branches = true;     // a step runs only the code for its kind of unit
+    StackPlace stack = StackPlace::Array;
+    uint32_t stack_words = 0; // of a stack that is not an array
     TexelReads reads = TexelReads::Textures;
 
     bool operator==(const KernelVariant&) const = default;
-    /// Returns the switches by name: "compute,group=64,branches,array,textures".
+    /// Returns the switches by name: "compute,group=64,branches,shared=12,textures".
     std::string text() const;
 };
 

@@ -7,12 +7,12 @@
 namespace ovc {
 namespace {
 
-constexpr uint32_t kSwitches = 19;
+constexpr uint32_t kSwitches = 20;
 
 /// Returns the kernel whose switches have the values of these bits, or nothing where no kernel may
 /// have them together: packets and refill are the compute kernel's, packets go through no portals,
-/// and long stacks are arrays where a driver loses words of those in registers. Storage buffers are
-/// no images.
+/// and long stacks are arrays where a driver loses words of those in registers. A stack in shared
+/// memory is in no registers, and storage buffers are no images.
 std::optional<ShaderConfig> kernel_of(uint32_t bits) {
     const auto take = [&] { return std::exchange(bits, bits >> 1) & 1; };
     ShaderConfig config;
@@ -25,7 +25,10 @@ std::optional<ShaderConfig> kernel_of(uint32_t bits) {
     config.loose_pairs = take();
     config.pool_buffers = take() ? 3 : 1;
     config.stack_depth = take() ? 40 : 8;
-    config.stack_registers = take();
+    const bool registers = take(), shared = take();
+    config.stack = shared      ? StackPlace::Shared
+                   : registers ? StackPlace::Registers
+                               : StackPlace::Array;
     config.packet = take() ? 2 : 1;
     config.claims = take();
     config.refill = take();
@@ -47,7 +50,9 @@ std::optional<ShaderConfig> kernel_of(uint32_t bits) {
         return std::nullopt;
     if (config.float_pairs && (config.may_wait || !config.certify))
         return std::nullopt;
-    if (config.stack_registers && config.stack_depth > 32)
+    if (shared && (registers || !config.compute))
+        return std::nullopt;
+    if (config.stack != StackPlace::Array && config.stack_depth > 32)
         return std::nullopt;
     return config;
 }

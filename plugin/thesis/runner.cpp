@@ -88,7 +88,7 @@ Result<GLuint> Runner::link(std::optional<gl::Program>& program, const char* fra
     config.any_hit = any_hit;
     config.certify = options_.certify;
     config.stack_depth = stack_depth_;
-    config.stack_registers = software_;
+    config.stack = software_ ? StackPlace::Registers : StackPlace::Array;
     config.branches = !software_;
     if (needs(Workaround::CountedRounds) && max_rounds_ > kMaxCountedRounds)
         config.max_rounds = kMaxCountedRounds;

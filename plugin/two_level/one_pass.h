@@ -88,11 +88,10 @@ private:
             const auto rays = batch.rays.begin() + ptrdiff_t(b * kRaysPerTask);
             std::copy(rays, rays + ptrdiff_t(block_rays_[b]),
                       batch.rays.begin() + ptrdiff_t(asked));
-            batch.sent.move_up(asked, b * kRaysPerTask, block_rays_[b]);
             asked += block_rays_[b];
         }
         batch.rays.resize(asked);
-        batch.sent.set_size(asked);
+        batch.sent.close_holes(kRaysPerTask, block_rays_);
         next_ += count;
     }
 

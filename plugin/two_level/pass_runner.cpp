@@ -403,9 +403,11 @@ std::vector<uint32_t> PassRunner::take_active() {
 }
 
 size_t PassRunner::part_rays(size_t rays) const {
-    constexpr size_t kMin = size_t(1) << 15, kMax = size_t(1) << 17, kMinWatched = 1024;
+    // A large GPU runs a quarter of a million invocations at once.
+    const size_t max = size_t(1) << (gl_.info().is_software ? 17 : 18);
+    constexpr size_t kMin = size_t(1) << 15, kMinWatched = 1024;
     constexpr double kSeconds = 0.03;
-    const size_t part = std::min<size_t>(std::clamp(rays / 4, kMin, kMax), plan_.batch_rays);
+    const size_t part = std::min<size_t>(std::clamp(rays / 4, kMin, max), plan_.batch_rays);
     if (!tracing_.watch.is_watched())
         return part;
     // Somebody may cancel the call, so a pass takes some hundredths of a second, as far as the pass

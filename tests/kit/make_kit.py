@@ -51,8 +51,8 @@ def main():
     for scene in SCENES:
         subprocess.run([build / "bin/overcast", "convert", scene, kit / f"scenes/{scene}.ovc"],
                        check=True, stdout=subprocess.DEVNULL)
-    shutil.copy(source / "tests/kit/run.sh", kit / "run.sh")
-    shutil.copy(source / "tests/kit/README.md", kit / "README.md")
+    for name in ("run.sh", "in_shares.sh", "README.md"):
+        shutil.copy(source / "tests/kit" / name, kit / name)
     shutil.copy(source / "LICENSE", kit / "LICENSE")
     (kit / "VERSION").write_text(version + "\n")
     archive = kit.with_suffix(kit.suffix + ".tgz")

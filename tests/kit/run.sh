@@ -22,7 +22,7 @@ missing() {
         sed -n 's/^[[:space:]]*\(lib[^ ]*\) => not found.*/\1/p
                 s/^.*\/\(lib[^ /]*\): version .* not found.*/\1/p' | sort -u
 }
-export LD_LIBRARY_PATH="$PWD/results/used"
+export LD_LIBRARY_PATH="$PWD/results/used${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}"
 while :; do
     added=0
     for library in $(missing); do
@@ -76,8 +76,8 @@ fi
 
 part doctor 30 $overcast doctor
 part devices 30 $overcast devices
-part tests 90 bin/gpu_test --gtest_filter="$tests" --gtest_brief=1
-part two_level 120 bin/plugin_test --gtest_filter="$two" --gtest_brief=1
+part tests 90 ./in_shares.sh bin/gpu_test --gtest_filter="$tests" --gtest_brief=1
+part two_level 120 ./in_shares.sh bin/plugin_test --gtest_filter="$two" --gtest_brief=1
 [ $short = 1 ] || part tune 120 $overcast devices --tune $for_device
 part kernels 60 $overcast bench $scene --only certified-fragment,certified-compute \
     --workloads primary,shadow,diffuse --size $size --repeats $repeats $for_device \

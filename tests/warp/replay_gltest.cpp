@@ -39,8 +39,10 @@ protected:
     /// Compares both for each ray, or each packet.
     void expect_same_counts(const PooledScene& scene, const ReplayedVariant& how,
                             std::span<const Ray> rays) {
-        const KernelVariant variant{
-            .packets = how.packets, .branches = how.branches, .register_words = 32};
+        const KernelVariant variant{.packets = how.packets,
+                                    .branches = how.branches,
+                                    .stack = StackPlace::Registers,
+                                    .stack_words = 32};
         const Answers answers = trace(scene, variant, rays, how.any_hit);
         std::vector<LocalRay> slots = scene.local_rays(rays, how.any_hit);
         LocalRay none{};

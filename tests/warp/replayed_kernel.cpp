@@ -10,7 +10,7 @@ namespace ovc_replay::REPLAY_NAMESPACE {
 using namespace glsl;
 
 #define OVC_STACK_DEPTH 64
-#define OVC_STACK_REGISTERS 0
+#define OVC_STACK 0
 #define OVC_REFILL 0
 #define OVC_LOOSE_PAIRS 1
 #define OVC_COUNTS 1

@@ -61,7 +61,7 @@ Result<GLuint> LeafPasses::kernel() {
     ShaderConfig config;
     config.certify = certify_;
     config.stack_depth = stack_depth(pages_);
-    config.stack_registers = software_;
+    config.stack = software_ ? StackPlace::Registers : StackPlace::Array;
     config.branches = !software_;
     config.reads = software_ ? TexelReads::Images : TexelReads::Textures;
     if (needs(Workaround::CountedRounds) && units > kMaxCountedRounds)
