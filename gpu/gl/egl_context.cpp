@@ -176,7 +176,7 @@ DeviceInfo describe() {
     info.is_software = name.find("llvmpipe") != std::string::npos ||
                        name.find("softpipe") != std::string::npos ||
                        name.find("swrast") != std::string::npos;
-    info.is_tested = name.starts_with("llvmpipe");
+    info.is_tested = name.starts_with("llvmpipe") || name.starts_with("nvidia h200");
     info.has_ballots = epoxy_has_gl_extension("GL_ARB_shader_ballot") &&
                        epoxy_has_gl_extension("GL_ARB_gpu_shader_int64");
     info.passes_in_flight = needs(Workaround::FinishedPass) ? 1 : 2;

@@ -161,6 +161,8 @@ TEST_F(ProgramStoreGl, ManyMayKeepAndFindAtOnce) {
         ASSERT_GE(pid, 0);
         if (pid == 0) { // runs the test below in another process
             setenv("OVC_PROGRAM_STORE_FOLDER", name.c_str(), 1);
+            for (const char* share : {"GTEST_TOTAL_SHARDS", "GTEST_SHARD_INDEX"})
+                unsetenv(share); // this process's tests may be one of several shares
             execl("/proc/self/exe", "gpu_test", "--gtest_filter=ProgramStoreGl.AnotherProcess*",
                   nullptr);
             _exit(3);

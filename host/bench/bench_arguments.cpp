@@ -110,6 +110,11 @@ void BenchWords::add_settings_to(CLI::App& app) {
         ->type_name("SIZE");
     app.add_option("--device", device, "A number or a part of a name from `overcast devices`")
         ->type_name("NAME");
+    app.add_option(
+           "--kernel-variant", kernel_variant,
+           "A variant that `overcast devices --tune` lists, for the contenders whose kernel, "
+           "fragment or compute, it is")
+        ->type_name("NAME");
     add_ranks_own(app, ranks_own);
     app.add_option("--json", json,
                    "Also write what was measured as JSON (docs/benchmarks.md); -: to standard "
@@ -305,6 +310,25 @@ static Result<Done> understand_kind(const BenchWords& words, BenchJob& job) {
     return Done{};
 }
 
+/// Gives the variant to the contenders whose kernel it is a variant of.
+static Result<Done> set_kernel_variant(const std::string& variant, BenchJob& job) {
+    if (variant.empty())
+        return Done{};
+    const ovc_kernel kernel =
+        variant.starts_with("fragment") ? OVC_KERNEL_FRAGMENT : OVC_KERNEL_COMPUTE;
+    bool any = false;
+    for (Contender& contender : job.contenders)
+        if (contender.kind == ContenderKind::TwoLevel && contender.kernel == kernel) {
+            contender.kernel_variant = variant;
+            any = true;
+        }
+    if (any)
+        return Done{};
+    return Error{fmt::format("--kernel-variant {}: none of the contenders has that kernel; "
+                             "--only certified-compute has compute",
+                             variant)};
+}
+
 /// Keeps the contenders that work within a budget of host memory.
 static Result<Done> keep_to_host_memory(const BenchWords& words, BenchJob& job) {
     if (words.host_memory.empty())
@@ -376,6 +400,8 @@ Result<BenchJob> understand_bench(const BenchWords& words) {
     if (!contenders)
         return contenders.error();
     job.contenders = std::move(*contenders);
+    if (const Result<Done> fine = set_kernel_variant(words.kernel_variant, job); !fine)
+        return fine.error();
     if (const Result<Done> fine = keep_to_host_memory(words, job); !fine)
         return fine.error();
     if (const Result<Done> fine = check_json(job); !fine)

@@ -36,6 +36,7 @@ struct BenchWords {
     std::string host_memory;
     std::string resident;
     std::string device;
+    std::string kernel_variant;
     std::string ranks_own;
     std::string json;
 

@@ -51,6 +51,17 @@ TEST(BenchArguments, ChooseContendersByNameOrFirstWord) {
     EXPECT_THAT(error({.only = "fast-"}), testing::HasSubstr("no contender 'fast-'"));
 }
 
+TEST(BenchArguments, GiveAVariantToTheKernelThatItIsOf) {
+    const std::string variant = "compute,group=32,branches,array,textures";
+    const Result<BenchJob> job =
+        understand_bench({.only = "certified,cpu-kdtree", .kernel_variant = variant});
+    ASSERT_TRUE(bool(job));
+    for (const Contender& contender : job->contenders)
+        EXPECT_EQ(contender.kernel_variant, contender.name == "certified-compute" ? variant : "");
+    EXPECT_THAT(error({.only = "certified-fragment", .kernel_variant = variant}),
+                testing::HasSubstr("none of the contenders has that kernel"));
+}
+
 TEST(BenchArguments, SweepThePluginAlone) {
     EXPECT_THAT(
         labels({.only = "certified-compute,cpu-kdtree", .leaves = "1,32", .gpu_memory = "all,12M"}),

@@ -147,7 +147,9 @@ Result<std::unique_ptr<Backend>> ContenderBuilder::build_on_gpu(const Contender&
     options.kind = contender.backend;
     options.device = device_;
     options.precision = contender.precision;
-    options.kernel = contender.kernel;
+    if (contender.kernel_variant.empty())
+        options.kernel = contender.kernel;
+    options.kernel_variant = contender.kernel_variant;
     options.leaves = contender.leaves.leaves;
     options.gpu_memory = contender.budget.memory;
     options.ranks_own = ranks_own_;

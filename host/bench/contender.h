@@ -35,6 +35,7 @@ struct Contender {
     ContenderKind kind;
     ovc_precision precision = OVC_PRECISION_CERTIFIED;
     ovc_kernel kernel = OVC_KERNEL_AUTO;
+    std::string kernel_variant; // of the plugin; empty: the kernel's default
     EmbreeMode embree = EmbreeMode::Medium;
     LeavesChoice leaves;
     BudgetChoice budget;
