@@ -120,12 +120,15 @@ Result<std::unique_ptr<Backend>> ContenderBuilder::build(const Contender& conten
     case ContenderKind::Embree:
         return make_embree_backend(soup_, contender.embree);
     case ContenderKind::FloatKdTree:
-        assert(tree_);
-        return make_float_kd_backend(soup_, *tree_);
     case ContenderKind::CpuKdTree:
         break;
     }
-    assert(tree_);
+    if (!tree_)
+        return Error{fmt::format("the scene has too many triangles for {}: leave it out by --only, "
+                                 "such as --only certified-compute",
+                                 contender.name)};
+    if (contender.kind == ContenderKind::FloatKdTree)
+        return make_float_kd_backend(soup_, *tree_);
     return make_cpu_backend(soup_, *tree_, tree_seconds_);
 }
 
