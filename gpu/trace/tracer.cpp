@@ -357,9 +357,22 @@ Result<Tracer::Pass> Tracer::submit(SentRays& rays) {
     return done.error();
 }
 
+/// Where the driver compiles a kernel beside this thread, it is given the one for any hit, or for
+/// the nearest, as well: most hosts ask for both, and it can compile them at the same time.
+void Tracer::begin_to_compile_both(RayKind kind, const ShaderConfig& config) {
+    if (device_.is_software)
+        return;
+    kernels_.begin(config);
+    if (kernels_.is_ready(config))
+        return;
+    kind.any_hit = !kind.any_hit;
+    kernels_.begin(shader_config(kind, options_.variants[kind]));
+}
+
 Result<Done> Tracer::launch(PassSlot& slot) {
     ShaderConfig config = shader_config(slot.kind, slot.variant);
     config.packet = slot.packets ? kPacketRays : 1; // not where too many rays had to be parted
+    begin_to_compile_both(slot.kind, config);
     const Result<GLuint> program = kernels_.program(config);
     if (!program)
         return program.error();
