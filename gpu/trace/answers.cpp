@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cstring>
 
 namespace ovc {
 namespace {
@@ -131,32 +130,25 @@ void AnswerWords::begin_read(size_t rays, bool may_wait) {
     if (!read_back_)
         return;
     const size_t all = whole_blocks(rays);
-    planes_copied_ = may_wait ? 4 : 3;
-    for (int number = 0; number < planes_copied_; ++number)
+    tells_leaves_ = may_wait;
+    for (int number = 0; number < (may_wait ? 4 : 3); ++number)
         glCopyNamedBufferSubData(buffer_.id(), read_back_->id(), GLintptr(offset_of(number)),
                                  GLintptr(offset_of(number)), GLsizeiptr(all * sizeof(uint32_t)));
     read_back_->end_copies();
 }
 
-void AnswerWords::read_plane(int number, size_t slots, std::vector<uint32_t>& to) {
+void AnswerWords::read_plane(int number, size_t slots, std::vector<uint32_t>& to) const {
     assert(number >= 0 && number < 4 && slots <= rays_);
     grow(to, slots);
-    const size_t bytes = slots * sizeof(uint32_t);
-    if (read_back_ && number >= planes_copied_) {
-        std::fill_n(to.begin(), slots, uint32_t(OVC_NO_LEAF));
-    } else if (read_back_) {
-        const std::byte* const from = read_back_->bytes().data() + offset_of(number);
-        parallel_for(slots, kAnswerGrain, [&](size_t first, size_t last) {
-            std::memcpy(&to[first], from + first * sizeof(uint32_t),
-                        (last - first) * sizeof(uint32_t));
-        });
-    } else {
-        glGetNamedBufferSubData(buffer_.id(), GLintptr(offset_of(number)), GLsizeiptr(bytes),
-                                to.data());
-    }
+    glGetNamedBufferSubData(buffer_.id(), GLintptr(offset_of(number)),
+                            GLsizeiptr(slots * sizeof(uint32_t)), to.data());
 }
 
 void AnswerWords::read(Answers& answers, size_t slots) {
+    if (read_back_) {
+        read_copied(answers, slots);
+        return;
+    }
     read_plane(0, slots, answers.names);
     uint32_t all = 0;
     for (size_t i = 0; i < slots; ++i)
@@ -164,6 +156,33 @@ void AnswerWords::read(Answers& answers, size_t slots) {
     if (all & OVC_SAYS_MORE)
         for (int k = 0; k < 3; ++k)
             read_plane(1 + k, slots, answers.more[size_t(k)]);
+}
+
+/// Reads what was copied behind the pass; of `more` only where any answer of a task says so.
+void AnswerWords::read_copied(Answers& answers, size_t slots) {
+    grow(answers.names, slots);
+    for (std::vector<uint32_t>& plane : answers.more)
+        grow(plane, slots);
+    const auto* const words = reinterpret_cast<const uint32_t*>(read_back_->bytes().data());
+    parallel_for(slots, kAnswerGrain, [&](size_t first, size_t last) {
+        const auto copy = [&](int number, std::vector<uint32_t>& to) {
+            std::copy(words + size_t(number) * rays_ + first, words + size_t(number) * rays_ + last,
+                      to.begin() + ptrdiff_t(first));
+        };
+        copy(0, answers.names);
+        uint32_t all = 0;
+        for (size_t i = first; i < last; ++i)
+            all |= answers.names[i];
+        if (!(all & OVC_SAYS_MORE))
+            return;
+        copy(1, answers.more[0]);
+        copy(2, answers.more[1]);
+        if (tells_leaves_)
+            copy(3, answers.more[2]);
+        else
+            std::fill(answers.more[2].begin() + ptrdiff_t(first),
+                      answers.more[2].begin() + ptrdiff_t(last), uint32_t(OVC_NO_LEAF));
+    });
 }
 
 } // namespace ovc

@@ -145,13 +145,14 @@ private:
     uint64_t offset_of(int number) const { return uint64_t(number) * rays_ * sizeof(uint32_t); }
     void fill(uint64_t offset, size_t words, uint32_t word) const;
     void fill_plane(int number, size_t rays, uint32_t word) const;
-    void read_plane(int number, size_t slots, std::vector<uint32_t>& to);
+    void read_plane(int number, size_t slots, std::vector<uint32_t>& to) const;
+    void read_copied(Answers& answers, size_t slots);
 
     uint32_t rays_;
     gl::Buffer buffer_;
     gl::BufferTexture texture_;
     std::optional<ReadBack> read_back_;
-    int planes_copied_ = 4; // behind the pass; without the last one, no answer names a leaf
+    bool tells_leaves_ = true; // the plane of leaves is copied behind the pass
 };
 
 } // namespace ovc
