@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <iterator>
 #include <span>
 
 namespace ovc {
@@ -353,18 +354,24 @@ Leaf whole_leaf(const Soup& soup, std::span<const TriangleId> triangles, const B
 
 Level1 partition(const Soup& soup, std::span<const TriangleId> triangles, const Box& bounds,
                  uint32_t max_leaf_triangles, BuildProgress* progress, const Sample& drawn,
-                 bool may_have_far_leaves) {
-    assert(max_leaf_triangles > 0);
+                 const FarLeaves& far) {
+    assert(max_leaf_triangles > 0 && (far.allowed || far.triangles.empty()));
     if (triangles.empty())
         return Level1{.bounds = bounds};
-    if (triangles.size() <= max_leaf_triangles) { // a sample might suggest that they are more
-        Level1 level1{
-            .nodes = {KdNode::leaf(0, 1)}, .bounds = bounds, .padding = padding_of(bounds)};
-        level1.leaves.push_back(whole_leaf(soup, triangles, bounds));
-        return level1;
-    }
     Partitioner partitioner(soup, bounds, progress);
-    partitioner.cut(triangles, bounds, max_leaf_triangles, drawn, may_have_far_leaves);
+    std::vector<TriangleId> near;
+    if (!far.triangles.empty()) {
+        std::ranges::set_difference(triangles, far.triangles, std::back_inserter(near));
+        triangles = near;
+        partitioner.add_far_leaf({far.triangles.begin(), far.triangles.end()});
+    }
+    if (triangles.size() <= max_leaf_triangles) // a sample might suggest that they are more
+        partitioner.add_leaves(bounds.padded(padding_of(bounds)),
+                               {{triangles.begin(), triangles.end()}});
+    else
+        partitioner.cut(triangles, bounds, max_leaf_triangles,
+                        far.triangles.empty() ? drawn : Sample{},
+                        far.allowed && far.triangles.empty());
     return partitioner.finish();
 }
 

@@ -111,13 +111,20 @@ inline bool far_leaf_pays(uint64_t far, uint64_t all, uint64_t max_leaf_triangle
     return far > 0 && far <= max_leaf_triangles && far <= all / 64;
 }
 
+/// Which leaves may lie in no cell.
+struct FarLeaves {
+    bool allowed = false; // rays come to such leaves
+    /// The triangles that are to be in one, sorted (far_search.h). Where there are none,
+    /// far_leaf_pays() decides on those that touch many cells.
+    std::span<const TriangleId> triangles{};
+};
+
 /// Returns `triangles` of the soup, which are sorted and lie in `bounds`, cut into leaves of at
 /// most max_leaf_triangles (> 0). A triangle is about two units of progress. drawn: a sample of
-/// `triangles`, which is not drawn again where it has the right rate. may_have_far_leaves: whether
-/// rays come to leaves that lie in no cell.
+/// `triangles`, which is not drawn again where it has the right rate.
 Level1 partition(const Soup& soup, std::span<const TriangleId> triangles, const Box& bounds,
                  uint32_t max_leaf_triangles, BuildProgress* progress = nullptr,
-                 const Sample& drawn = {}, bool may_have_far_leaves = false);
+                 const Sample& drawn = {}, const FarLeaves& far = {});
 
 /// Returns `triangles`, as above, cut into as few leaves of at most max_leaf_triangles (> 0) as
 /// possible, each triangle in one of them: by medians of their centres, all in one cell.

@@ -88,7 +88,7 @@ TEST(Partition, RefusesToWalkWhereDoublesLoseTheLeaf) {
 Level1 cut_with_far_leaves(const Soup& soup, uint32_t most) {
     Box bounds;
     const auto ids = hittable_triangles(soup, nullptr, &bounds);
-    return partition(soup, ids, bounds, most, nullptr, {}, /* may_have_far_leaves= */ true);
+    return partition(soup, ids, bounds, most, nullptr, {}, {.allowed = true});
 }
 
 /// All planes through a heap of triangles that is smaller than the padding of cells would leave all

@@ -7,6 +7,7 @@
 #include "kdtree/partition.h"
 #include "plugin/out_of_core/source_blocks.h"
 
+#include <algorithm>
 #include <cassert>
 #include <vector>
 
@@ -15,13 +16,14 @@ namespace {
 
 class Dealer {
 public:
-    Dealer(const CellFinder& finder, uint32_t far_cells, DealtCells& dealt)
-        : finder_(finder), far_cells_(far_cells), dealt_(dealt) {}
+    Dealer(const CellFinder& finder, std::span<const TriangleId> far, uint32_t far_cells,
+           DealtCells& dealt)
+        : finder_(finder), far_(far), far_cells_(far_cells), dealt_(dealt) {}
 
     void deal(TriangleId name, Bytes corners, const Triangle& triangle) {
         touched_.clear();
         finder_.find(triangle, [&](uint32_t c) { touched_.push_back(c); });
-        if (touched_.size() >= far_cells_)
+        if (touched_.size() >= far_cells_ || std::ranges::binary_search(far_, name))
             touched_ = {uint32_t(finder_.cells())};
         const Box box = bounds_of(triangle);
         for (const uint32_t c : touched_)
@@ -30,7 +32,8 @@ public:
 
 private:
     const CellFinder& finder_;
-    const uint32_t far_cells_;
+    const std::span<const TriangleId> far_;
+    const uint32_t far_cells_; // that such a triangle touches
     DealtCells& dealt_;
     std::vector<uint32_t> touched_; // by the triangle that is being dealt
 };
@@ -45,10 +48,12 @@ void deal_block(const SourceBlock& block, const SourceMesh& mesh, Dealer dealer)
 
 } // namespace
 
-void deal_source(TriangleSource& source, const CellFinder& finder, uint64_t hittable,
+void deal_source(TriangleSource& source, const CellFinder& finder,
+                 std::span<const TriangleId> far_triangles, uint64_t hittable,
                  uint64_t max_leaf_triangles, DealtCells& dealt, BuildProgress* progress) {
     assert(dealt.cells() == finder.cells() + 1);
-    const Dealer dealer(finder, finder.cells() > 1 ? kFarCells : kNone, dealt);
+    const bool by_cells = far_triangles.empty() && finder.cells() > 1;
+    const Dealer dealer(finder, far_triangles, by_cells ? kFarCells : kNone, dealt);
     for_each_blocks(source, [&](std::span<const SourceBlock> blocks) {
         parallel_for(blocks.size(), 1, [&](size_t first, size_t last) {
             for (size_t b = first; b < last; ++b) {
@@ -59,8 +64,8 @@ void deal_source(TriangleSource& source, const CellFinder& finder, uint64_t hitt
     });
     const size_t far = finder.cells();
     dealt.flush(far);
-    if (!far_leaf_pays(dealt.count(far), hittable, max_leaf_triangles)) {
-        Dealer all(finder, kNone, dealt);
+    if (by_cells && !far_leaf_pays(dealt.count(far), hittable, max_leaf_triangles)) {
+        Dealer all(finder, {}, kNone, dealt);
         dealt.for_each(far, [&](TriangleId name, Bytes corners) {
             const SourceMesh& mesh = source.meshes()[name.mesh];
             all.deal(name, corners, borrowed_chunk(mesh, corners).triangle(0));

@@ -30,6 +30,7 @@ struct BlockSurvey {
     Survey found;
     std::vector<uint32_t> drawn; // in the block
     std::vector<uint64_t> sums;
+    FarSearch far;
 };
 
 BlockSurvey look_at(const SourceBlock& block, const SourceMesh& mesh, uint32_t rate,
@@ -38,9 +39,14 @@ BlockSurvey look_at(const SourceBlock& block, const SourceMesh& mesh, uint32_t r
     const Chunk chunk = borrowed_chunk(mesh, block.corners);
     std::vector<uint8_t> is_hit(block.count);
     result.found = survey(chunk, 0, is_hit, progress);
-    for (uint32_t i = 0; i < block.count; ++i)
-        if (is_hit[i] && (triangle_hash(chunk.triangle(i)) & (rate - 1)) == 0)
+    for (uint32_t i = 0; i < block.count; ++i) {
+        if (!is_hit[i])
+            continue;
+        const Triangle triangle = chunk.triangle(i);
+        result.far.add(block.id(i), bounds_of(triangle));
+        if ((triangle_hash(triangle) & (rate - 1)) == 0)
             result.drawn.push_back(i);
+    }
     result.sums.resize(corner_blocks(block.count));
     sum_blocks(block.corners, mesh.triangle_bytes(), result.sums);
     return result;
@@ -60,6 +66,7 @@ SourceSurvey survey_source(TriangleSource& source, uint32_t rate, BuildProgress*
         for (size_t b = 0; b < blocks.size(); ++b) {
             total.triangles += blocks[b].count;
             total.found.add(parts[b].found);
+            total.far.add(parts[b].far);
             total.sums.sums.insert(total.sums.sums.end(), parts[b].sums.begin(),
                                    parts[b].sums.end());
             for (const uint32_t i : parts[b].drawn)

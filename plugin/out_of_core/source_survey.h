@@ -5,6 +5,7 @@
 
 #include "core/build_progress.h"
 #include "core/soup.h"
+#include "kdtree/far_search.h"
 #include "plugin/leaf_store/corner_sums.h"
 #include "plugin/out_of_core/local_soup.h"
 #include "plugin/structure/triangle_source.h"
@@ -18,6 +19,7 @@ struct SourceSurvey {
     Survey found;
     CornerSums sums;
     LocalSoup sample; // as sample_triangles() draws it of those that can be hit
+    FarSearch far;    // among those that can be hit
 
     uint64_t hittable() const { return triangles - found.dropped.total(); }
 };

@@ -7,6 +7,7 @@
 #include "core/text/format_text.h"
 #include "gpu/frame/frames.h"
 #include "kdtree/cells.h"
+#include "kdtree/partition.h"
 #include "plugin/build/build_scene.h"
 #include "plugin/build/saved_levels.h"
 #include "plugin/out_of_core/build_steps.h"
@@ -59,6 +60,8 @@ public:
         SourceSurvey surveyed = survey_source(source_, rate, progress_);
         hittable_ = surveyed.hittable();
         set_limits(hittable_);
+        if (hittable_ / kFarCells <= max_triangles()) // as a build in memory has it
+            far_ = surveyed.far.found();
         check_steps(surveyed.sums.checksum(), rate);
         if (hittable_ > 0) {
             if (const Result<Done> dealt =
@@ -100,11 +103,14 @@ private:
     Result<Done> deal(LocalSoup sample, uint32_t rate, const Box& bounds) {
         std::vector<TriangleId> drawn = sample.triangles();
         Duplicates::take_out(sample.soup(), drawn);
+        std::erase_if(drawn, [&](TriangleId id) {
+            return std::ranges::binary_search(far_, sample.name(id));
+        });
         level1_.bounds = bounds;
         level1_.padding = padding_of(bounds);
         begin(progress_, "level 1", 0.3, all_);
-        planes_ = streamed_planes(sample.soup(), drawn, rate, hittable_, bounds, max_triangles(),
-                                  progress_);
+        planes_ = streamed_planes(sample.soup(), drawn, rate, hittable_ - far_.size(), bounds,
+                                  max_triangles(), progress_);
         cells_ = cells_of(planes_, bounds, level1_.padding);
         const size_t cells = cells_.size() + 1; // the last one is that of far-reaching triangles
         dealt_.emplace(cells, source_.meshes(), budget_.buffer_bytes(cells), scratch_);
@@ -113,7 +119,7 @@ private:
             dealt_->restore(std::move(dealt));
             add(progress_, all_);
         } else {
-            deal_source(source_, finder, hittable_, max_triangles(), *dealt_, progress_);
+            deal_source(source_, finder, far_, hittable_, max_triangles(), *dealt_, progress_);
             steps_.keep(dealt_->dealt());
         }
         uint64_t largest = 0;
@@ -145,7 +151,8 @@ private:
             planned.nodes[cells_[cell].node] =
                 KdNode::leaf(first, uint32_t(planned.leaves.size()) - first);
         }
-        if (planned.leaves.size() == 1 || one_frame_suits(sample, drawn, level1_.bounds)) {
+        if (planned.leaves.size() == 1 ||
+            (far_.empty() && one_frame_suits(sample, drawn, level1_.bounds))) {
             share_frame(planned);
         } else {
             for (const TriangleId id : drawn)
@@ -252,6 +259,8 @@ private:
     BuildProgress* const progress_;
     const uint64_t all_;    // triangles, whether they can be hit or not
     uint64_t hittable_ = 0; // of them, duplicates included
+    std::vector<TriangleId>
+        far_; // those of the far leaf, where it is known before triangles are dealt
     const std::vector<uint32_t> first_numbers_;
     StreamedLimits limits_;
     Level1 level1_; // without nodes and leaves

@@ -53,6 +53,23 @@ std::vector<Ray> rays_near(const Floor& floor, double reach, size_t count) {
     return rays;
 }
 
+/// Returns those of rays_near() that aim at nothing in particular.
+std::vector<Ray> plain_of(const std::vector<Ray>& rays) {
+    std::vector<Ray> plain;
+    for (size_t i = 0; i < rays.size(); ++i)
+        if (i % 16 < 4)
+            plain.push_back(rays[i]);
+    return plain;
+}
+
+/// Returns how many of the rays are not certain to the kernel.
+uint64_t flagged_of(TwoLevel& structure, const std::vector<Ray>& rays) {
+    std::vector<Hit> hits(rays.size());
+    const uint64_t before = structure.statistics().flagged;
+    EXPECT_TRUE(ok(structure.intersect(rays, {}, hits)));
+    return structure.statistics().flagged - before;
+}
+
 /// The parameters are how far the floor reaches, and whether the kernel is the compute kernel.
 class FarTrianglesGl : public TwoLevelGl,
                        public testing::WithParamInterface<std::tuple<double, bool>> {};
@@ -77,15 +94,28 @@ TEST_P(FarTrianglesGl, LetAFloorLeaveFewHitsInDoubt) {
         const auto structure = build(soup, {.leaf_triangles = 100, .compute = compute});
         ASSERT_TRUE(structure);
         test::expect_answers(*structure, rays, expected);
-        std::vector<Ray> plain;
-        for (size_t i = 0; i < rays.size(); ++i)
-            if (i % 16 < 4)
-                plain.push_back(rays[i]);
-        std::vector<Hit> hits(plain.size());
-        const uint64_t before = structure->statistics().flagged;
-        ASSERT_TRUE(ok(structure->intersect(plain, {}, hits)));
+        const std::vector<Ray> plain = plain_of(rays);
         // At a thousand sizes one frame still suits both.
-        EXPECT_LE(structure->statistics().flagged - before, plain.size() / (reach > 1e3 ? 50 : 10));
+        EXPECT_LE(flagged_of(*structure, plain), plain.size() / (reach > 1e3 ? 50 : 10));
+    }
+}
+
+/// No triangle touches many cells where there are few leaves, or one.
+TEST_P(FarTrianglesGl, AreFoundWhereAllElseIsOneLeaf) {
+    const auto [reach, compute] = GetParam();
+    for (const uint32_t across : {2u, 24u}) {
+        SCOPED_TRACE(across);
+        test::Random random(across);
+        const Floor floor = random_floor(random, reach);
+        Soup soup = test::closed_grid(across);
+        soup.chunks.push_back(floor.chunk(1));
+        const std::vector<Ray> rays = rays_near(floor, reach, 4000);
+        const auto structure = build(soup, {.leaf_triangles = 1 << 20, .compute = compute});
+        ASSERT_TRUE(structure);
+        EXPECT_EQ(structure->scene().level1.leaves.size(), 2u);
+        test::expect_answers(*structure, rays, test::brute_force(soup, rays));
+        const std::vector<Ray> plain = plain_of(rays);
+        EXPECT_LE(flagged_of(*structure, plain), plain.size() / 50);
     }
 }
 
