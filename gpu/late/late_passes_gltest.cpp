@@ -10,6 +10,8 @@
 #include <algorithm>
 #include <array>
 #include <list>
+#include <ostream>
+#include <string>
 
 namespace ovc {
 
@@ -25,6 +27,11 @@ constexpr size_t kBatches = 10, kRays = 1500;
 struct LateWay {
     bool compute;
     bool software; // as a software renderer's passes are run, which are not timed by queries
+
+    std::string name() const {
+        return std::string(compute ? "Compute" : "Fragment") + (software ? "" : "OfGpu");
+    }
+    friend void PrintTo(const LateWay& way, std::ostream* out) { *out << way.name(); }
 };
 
 class LatePassesGl : public test::OnGl, public testing::WithParamInterface<LateWay> {
@@ -120,10 +127,7 @@ protected:
 INSTANTIATE_TEST_SUITE_P(Kernel, LatePassesGl,
                          testing::Values(LateWay{false, true}, LateWay{false, false},
                                          LateWay{true, true}, LateWay{true, false}),
-                         [](const auto& p) {
-                             return std::string(p.param.compute ? "Compute" : "Fragment") +
-                                    (p.param.software ? "" : "OfGpu");
-                         });
+                         [](const auto& p) { return p.param.name(); });
 
 TEST_P(LatePassesGl, AnswerAsPassesOneByOneDo) {
     const auto expected = one_by_one(/* moves= */ true);
