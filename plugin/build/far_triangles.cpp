@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plugin/build/far_triangles.h"
 
+#include "kdtree/far_search.h"
 #include "plugin/build/built_scene.h"
 
 #include <algorithm>
@@ -9,15 +10,14 @@
 namespace ovc {
 namespace {
 
-/// Each ray is tested with all of them; above this a tree of float32 boxes is faster.
-constexpr size_t kMaxOfLeaf = 16;
-constexpr size_t kMaxOfScene = 32;
+/// Each ray is tested with all of them, eight rays at a time.
+constexpr size_t kMaxOfScene = FarSearch::kMax;
 /// A leaf reaches far if it is at least this part of the scene.
 constexpr double kMinReach = 1.0 / 4;
 
 /// Returns the triangles of the leaf; none where they are not few, not far, or one is too thin.
 std::vector<FarTriangle> far_triangles_of(const BuiltScene& scene, const Leaf& leaf) {
-    if (leaf.list().size() > kMaxOfLeaf ||
+    if (leaf.list().size() > kMaxOfScene ||
         max_component(leaf.box.extent()) < kMinReach * max_component(scene.level1.bounds.extent()))
         return {};
     std::vector<FarTriangle> all;

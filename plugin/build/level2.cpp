@@ -7,7 +7,6 @@
 #include "core/text/format_text.h"
 #include "gpu/frame/frames.h"
 #include "kdtree/far_search.h"
-#include "kdtree/partition.h"
 #include "kdtree/sample.h"
 #include "plugin/plan/one_leaf.h"
 #include "plugin/plan/page_rate.h"
@@ -71,7 +70,9 @@ public:
         const bool one_frame = one_frame_suits(soup_, triangles, bounds);
         const Sample sample = drawn(triangles, one_frame);
         const uint32_t max_triangles = first_max_triangles(triangles, bounds, one_frame, sample);
-        const std::vector<TriangleId> far = far_of(triangles, max_triangles);
+        std::vector<TriangleId> far;
+        if (needs_far_search(triangles.size(), max_triangles, one_frame))
+            far = find_far(soup_, triangles);
         scene_.level1 = partition(soup_, triangles, bounds, max_triangles, progress_, sample,
                                   {.allowed = true, .triangles = far});
         if ((one_frame && far.empty()) || scene_.level1.leaves.size() == 1)
@@ -113,15 +114,6 @@ public:
     }
 
 private:
-    /// Returns the triangles that reach far beyond all others, where there are too few leaves for
-    /// partition() to see which those are. One frame may suit most triangles then, and still leave
-    /// these in doubt, to which most rays go.
-    std::vector<TriangleId> far_of(std::span<const TriangleId> triangles,
-                                   uint32_t max_triangles) const {
-        const bool few_leaves = triangles.size() / kFarCells <= max_triangles;
-        return few_leaves ? find_far(soup_, triangles) : std::vector<TriangleId>();
-    }
-
     bool maybe_one_leaf(bool one_frame) const { return limits_.whole_bytes > 0 && one_frame; }
 
     /// Draws the sample for first_max_triangles(), or none where that needs none. Where pages do

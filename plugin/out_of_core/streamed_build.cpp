@@ -7,7 +7,6 @@
 #include "core/text/format_text.h"
 #include "gpu/frame/frames.h"
 #include "kdtree/cells.h"
-#include "kdtree/partition.h"
 #include "plugin/build/build_scene.h"
 #include "plugin/build/saved_levels.h"
 #include "plugin/out_of_core/build_steps.h"
@@ -60,12 +59,10 @@ public:
         SourceSurvey surveyed = survey_source(source_, rate, progress_);
         hittable_ = surveyed.hittable();
         set_limits(hittable_);
-        if (hittable_ / kFarCells <= max_triangles()) // as a build in memory has it
-            far_ = surveyed.far.found();
         check_steps(surveyed.sums.checksum(), rate);
         if (hittable_ > 0) {
             if (const Result<Done> dealt =
-                    deal(std::move(surveyed.sample), rate, surveyed.found.bounds);
+                    deal(std::move(surveyed.sample), surveyed.far, rate, surveyed.found.bounds);
                 !dealt)
                 return dealt.error();
             if (const Result<Done> built = build_cells(rate > 1); !built)
@@ -100,9 +97,12 @@ private:
     }
 
     /// Chooses planes by the sample, deals all triangles, and plans a leaf for each cell.
-    Result<Done> deal(LocalSoup sample, uint32_t rate, const Box& bounds) {
+    Result<Done> deal(LocalSoup sample, const FarSearch& far, uint32_t rate, const Box& bounds) {
         std::vector<TriangleId> drawn = sample.triangles();
         Duplicates::take_out(sample.soup(), drawn);
+        one_frame_ = one_frame_suits(sample.soup(), drawn, bounds);
+        if (needs_far_search(hittable_, max_triangles(), one_frame_))
+            far_ = far.found();
         std::erase_if(drawn, [&](TriangleId id) {
             return std::ranges::binary_search(far_, sample.name(id));
         });
@@ -151,8 +151,7 @@ private:
             planned.nodes[cells_[cell].node] =
                 KdNode::leaf(first, uint32_t(planned.leaves.size()) - first);
         }
-        if (planned.leaves.size() == 1 ||
-            (far_.empty() && one_frame_suits(sample, drawn, level1_.bounds))) {
+        if (planned.leaves.size() == 1 || (far_.empty() && one_frame_)) {
             share_frame(planned);
         } else {
             for (const TriangleId id : drawn)
@@ -257,10 +256,10 @@ private:
     const TwoLevelOptions& options_;
     const MemoryPlan& plan_;
     BuildProgress* const progress_;
-    const uint64_t all_;    // triangles, whether they can be hit or not
-    uint64_t hittable_ = 0; // of them, duplicates included
-    std::vector<TriangleId>
-        far_; // those of the far leaf, where it is known before triangles are dealt
+    const uint64_t all_;          // triangles, whether they can be hit or not
+    uint64_t hittable_ = 0;       // of them, duplicates included
+    bool one_frame_ = true;       // one frame suits them
+    std::vector<TriangleId> far_; // what FarSearch found, where that matters
     const std::vector<uint32_t> first_numbers_;
     StreamedLimits limits_;
     Level1 level1_; // without nodes and leaves
