@@ -13,7 +13,7 @@ install_packages
 echo "== configure and build (Release) into build/"
 cmake --preset release >/dev/null
 cmake --build build
-echo "== render: 'plants', 347 MiB of level 2, in 86 MiB of GPU memory"
+echo "== render: 'plants', 343 MiB of level 2, in 86 MiB of GPU memory"
 mkdir -p out
 build/bin/overcast render plants --size 1280x720 --gpu-memory 86M \
     -o out/demo.png -o out/demo.exr --stats out/demo.json
