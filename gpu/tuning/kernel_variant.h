@@ -17,7 +17,7 @@
 namespace ovc {
 
 /// Certified answers are the same bits whichever variant a kernel is. Those that a device cannot
-/// run, and switches that mean nothing together, are left out by candidates().
+/// run, and switches that mean nothing together, are left out by neighbours().
 struct KernelVariant {
     bool compute = true;      // false: the fragment kernel, which lacks some of the others
     bool float_pairs = false; // frames are changed in pairs of floats; else in doubles

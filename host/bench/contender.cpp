@@ -124,9 +124,10 @@ Result<std::unique_ptr<Backend>> ContenderBuilder::build(const Contender& conten
         break;
     }
     if (!tree_)
-        return Error{fmt::format("the scene has too many triangles for {}: leave it out by --only, "
-                                 "such as --only certified-compute",
-                                 contender.name)};
+        return Error{fmt::format("found {} triangles, with those that are placed again, expected "
+                                 "at most {} for a tree on the CPU: leave it out by --only, such "
+                                 "as --only certified-compute",
+                                 soup_.triangle_count(), kMaxCpuTreeTriangles)};
     if (contender.kind == ContenderKind::FloatKdTree)
         return make_float_kd_backend(soup_, *tree_);
     return make_cpu_backend(soup_, *tree_, tree_seconds_);

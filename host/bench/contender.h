@@ -58,11 +58,15 @@ Result<std::vector<Contender>> choose_contenders(std::span<const std::string> on
                                                  std::span<const LeavesChoice> leaves,
                                                  std::span<const BudgetChoice> budgets);
 
+/// The max triangles of a KD-tree on the CPU, which holds each placed one, in some 150 bytes.
+inline constexpr uint64_t kMaxCpuTreeTriangles = 100'000'000;
+
 /// Builds contenders over one soup, which must outlive them.
 class ContenderBuilder {
 public:
     /// tree: over the soup, for the contenders cpu-kdtree and cpu-float-kdtree, which it outlives;
-    /// null where they do not take part. tree_seconds: what building it took.
+    /// null where they do not take part or the scene is too large. tree_seconds: what building it
+    /// took.
     ContenderBuilder(const Soup& soup, const KdTree* tree, double tree_seconds, std::string device,
                      LogSink log);
     /// Lets the contenders read a scene that lies on a disk, which outlives them. contenders: that

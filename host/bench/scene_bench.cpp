@@ -88,13 +88,10 @@ struct Reference {
     std::unique_ptr<Backend> backend; // over the tree
 };
 
-/// The CPU KDT holds each placed triangle, in some 150 bytes.
-constexpr uint64_t kMaxReferenceTriangles = 100'000'000;
-
 Reference make_reference(const SceneBench& job, const Soup& soup, const BenchSurroundings& around) {
     if (job.first_is_reference || job.host_bytes > 0)
         return {};
-    if (soup.triangle_count() > kMaxReferenceTriangles) {
+    if (soup.triangle_count() > kMaxCpuTreeTriangles) {
         say(around.log, LogLevel::Warning,
             fmt::format("{} has too many triangles for the CPU KDT, {} with those that are placed "
                         "again; the first contender is the reference",
