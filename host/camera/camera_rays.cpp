@@ -82,12 +82,12 @@ CameraRays::CameraRays(const Pinhole& pinhole, const Film& film, const CameraSam
 
 CameraRays::CameraRays(const Pinhole& pinhole, const Film& film, std::span<const dvec2> points)
     : pinhole_(pinhole),
-      cone_(cone_of(pinhole, 1)),
-      samples_(1),
+      cone_(cone_of(pinhole, 1)), // as large as a pixel, however many points it has
+      samples_(film.samples()),
       filter_(sampling_.filter),
       points_(points) {
-    assert(points.size() == uint64_t(film.width()) * film.height());
-    order_.resize(points.size());
+    order_.resize(size_t(film.width()) * film.height());
+    assert(points.size() == order_.size() * samples_);
     std::iota(order_.begin(), order_.end(), 0);
     if (film.pixels_done() > 0)
         std::erase_if(order_, [&](uint32_t pixel) { return film.done(pixel); });
@@ -96,14 +96,14 @@ CameraRays::CameraRays(const Pinhole& pinhole, const Film& film, std::span<const
 CameraRays::CameraRays(const Pinhole& pinhole, uint32_t samples, std::vector<uint32_t> pixels,
                        std::span<const dvec2> points, const CameraSampling& sampling)
     : pinhole_(pinhole),
-      cone_(cone_of(pinhole, sampling.random_places ? kCommonSamples : samples)),
+      cone_(cone_of(pinhole, sampling.random_places ? kCommonSamples
+                             : points.empty()       ? samples
+                                                    : 1)),
       samples_(samples),
       sampling_(sampling),
       filter_(sampling.filter),
       order_(std::move(pixels)),
-      points_(points) {
-    assert(points.empty() || samples == 1);
-}
+      points_(points) {}
 
 /// Returns the pixel that a point of the picture lies in.
 static glm::uvec2 pixel_at(const Pinhole& pinhole, const dvec2& point) {
@@ -129,12 +129,12 @@ CameraRays::Place CameraRays::sampled(uint32_t pixel, uint32_t sample) const {
 }
 
 CameraRays::Place CameraRays::place(uint64_t i) const {
+    const uint32_t pixel = order_[i / samples_], sample = uint32_t(i % samples_);
     if (points_.empty())
-        return sampled(order_[i / samples_], sampling_.first_sample + uint32_t(i % samples_));
-    const uint32_t pixel = order_[i];
-    const dvec2& at = points_[pixel];
+        return sampled(pixel, sampling_.first_sample + sample);
+    const dvec2& at = points_[size_t(pixel) * samples_ + sample];
     const glm::uvec2 in = pixel_at(pinhole_, at);
-    return {pixel, 0, in.x, in.y, at - dvec2(in), dvec2(0)};
+    return {pixel, sample, in.x, in.y, at - dvec2(in), dvec2(0)};
 }
 
 void CameraRays::make(uint64_t first, size_t count, RayList<Path>& paths) const {

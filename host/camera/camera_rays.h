@@ -35,12 +35,12 @@ class CameraRays {
 public:
     /// The pinhole must outlive it; the film need not.
     CameraRays(const Pinhole& pinhole, const Film& film, const CameraSampling& sampling = {});
-    /// Makes a ray through each of the points of the picture, which are in pixels from its top left
-    /// corner, in their order, one for each pixel of the film that is not done. The points must
-    /// outlive it.
+    /// Makes rays through points of the picture, which are in pixels from its top left corner: as
+    /// many for each pixel of the film that is not done as it has samples, in their order. Those of
+    /// a pixel follow one another. The points must outlive it.
     CameraRays(const Pinhole& pinhole, const Film& film, std::span<const dvec2> points);
     /// Makes so many rays for each of these pixels of a film, in their order: through the pixel, or
-    /// through its point where there are points.
+    /// through its points where there are points.
     CameraRays(const Pinhole& pinhole, uint32_t samples, std::vector<uint32_t> pixels,
                std::span<const dvec2> points, const CameraSampling& sampling = {});
 

@@ -8,6 +8,7 @@
 #include <cassert>
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 namespace ovc {
 
@@ -40,10 +41,17 @@ Film::Film(uint32_t width, uint32_t height, uint32_t samples)
 
 void Film::add(const Place& at, const vec3& light) {
     Sums& sums = at.tile.sums[at.pixel];
-    for (int channel = 0; channel < 3; ++channel)
-        if (light[channel] != 0)
-            std::atomic_ref(sums[size_t(channel)])
-                .fetch_add(fixed(light[channel]), std::memory_order_relaxed);
+    const bool alone = is_last(at); // additions that others cannot see cost less
+    for (int channel = 0; channel < 3; ++channel) {
+        if (light[channel] == 0)
+            continue;
+        const int64_t more = fixed(light[channel]);
+        int64_t& sum = sums[size_t(channel)];
+        if (alone)
+            sum += more;
+        else
+            std::atomic_ref(sum).fetch_add(more, std::memory_order_relaxed);
+    }
 }
 
 Film::Sums Film::sums(uint32_t pixel) const {
@@ -73,6 +81,17 @@ void Film::restore(std::span<const uint32_t> pixels, std::span<const Sums> sums)
         }
         done_.fetch_add(done_now, std::memory_order_relaxed);
     });
+}
+
+Film::Sums Film::sums_of(const vec3& mean) const {
+    const auto of = [&](float light) { return int64_t(samples_) * fixed(light); };
+    return {of(mean.x), of(mean.y), of(mean.z)};
+}
+
+void Film::take(Film&& other) {
+    assert(other.width_ == width_ && other.height_ == height_ && other.samples_ == samples_);
+    std::swap(tiles_, other.tiles_);
+    done_ = other.done_.exchange(done_);
 }
 
 // The sums stand before a byte for each pixel, 1 where it is done.

@@ -29,8 +29,8 @@ public:
     uint32_t height() const { return height_; }
     uint32_t samples() const { return samples_; }
 
-    /// Adds light that one of the pixel's camera rays gets; the picture has the mean of its camera
-    /// rays. NaN counts as 0.
+    /// Adds light that one of the pixel's camera rays gets, for a ray of the pixel that is under
+    /// way; the picture has the mean of its camera rays. NaN counts as 0.
     void add(uint32_t pixel, const vec3& light) { add(place(pixel), light); }
 
     /// Counts more rays of the pixel as under way. Its camera rays are counted from the start.
@@ -55,6 +55,11 @@ public:
     void restore(uint32_t pixel, const Sums& sums);
     /// The same for several pixels, each named once. sums: one for each.
     void restore(std::span<const uint32_t> pixels, std::span<const Sums> sums);
+    /// Returns the sums of a pixel that has this mean light.
+    Sums sums_of(const vec3& mean) const;
+    /// Takes all that the other film has, which is as large and has as many samples. No ray of
+    /// either is under way.
+    void take(Film&& other);
 
     /// How many tiles there are, which are numbered row by row.
     uint32_t tile_count() const { return columns_ * rows_; }
@@ -98,12 +103,16 @@ private:
     static std::atomic_ref<uint32_t> answered(const Place& at) {
         return std::atomic_ref(at.tile.answered[at.pixel]);
     }
+    /// Returns whether no other ray of the pixel is under way, so that nobody else writes to it.
+    bool is_last(const Place& at) const {
+        return answered(at).load(std::memory_order_acquire) + 1 == samples_;
+    }
 
     const uint32_t width_, height_, samples_;
     const double mean_scale_;       // makes the mean light of a pixel's sums
     const uint32_t across_bits_;    // a tile is 2^across_bits_ pixels wide
     const uint32_t columns_, rows_; // of tiles
-    const SystemPages tiles_;
+    SystemPages tiles_;
     std::atomic<uint64_t> done_{0}; // pixels
 };
 
@@ -127,7 +136,12 @@ public:
 private:
     void close(const Place& at) {
         assert(answered(at).load() != film_.samples_);
-        done_ += answered(at).fetch_add(1, std::memory_order_acq_rel) + 1 == film_.samples_;
+        if (!film_.is_last(at)) {
+            done_ += answered(at).fetch_add(1, std::memory_order_acq_rel) + 1 == film_.samples_;
+            return;
+        }
+        answered(at).store(film_.samples_, std::memory_order_release); // costs less
+        ++done_;
     }
 
     Film& film_;

@@ -19,7 +19,7 @@ TEST(Film, AddsUpToTheSameBitsInAnyOrderAndFromAnyThread) {
     std::mt19937 random(1);
     for (vec3& l : light)
         l = std::exp2(float(random() % 24) - 18) * vec3(random() % 1000, random() % 1000, 1);
-    Film in_order(2, 1), shuffled(2, 1), parallel(2, 1);
+    Film in_order(2, 1), shuffled(2, 1), parallel(2, 1, uint32_t(light.size()));
     for (const vec3& l : light)
         in_order.add(1, l);
     std::vector<vec3> other = light;
@@ -83,6 +83,17 @@ TEST(Film, ATileGoesToAnotherFilmWithThePixelsThatAreDone) {
             ASSERT_EQ(to.sums(pixel), pixel % 3 != 0 ? from.sums(pixel) : Film::Sums()) << pixel;
         }
     }
+}
+
+TEST(Film, GivesAllThatItHasToAnother) {
+    Film from(3, 2, 2), to(3, 2, 2);
+    from.restore(4, from.sums_of({0.5f, 0.25f, 3}));
+    const Film::Sums sums = from.sums(4);
+    to.take(std::move(from));
+    EXPECT_EQ(to.pixels_done(), 1u);
+    EXPECT_EQ(to.sums(4), sums);
+    EXPECT_EQ(to.image().pixels[4], vec4(0.5f, 0.25f, 3, 1));
+    EXPECT_FALSE(to.done(3));
 }
 
 TEST(Film, WhatIsNoNumberIsDarkAndInfinityIsNotMore) {

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <iterator>
 #include <unordered_map>
+#include <utility>
 
 namespace ovc {
 namespace {
@@ -76,48 +77,32 @@ bool looks_differ(const vec3& a, const vec3& b, float threshold) {
 
 class Supersampling {
 public:
-    Supersampling(const ImageSize& size, const Antialias& how, double gamma,
-                  const TracePoints& trace)
-        : size_(size),
+    Supersampling(const Antialias& how, double gamma, SampleTracer& tracer, Film& film)
+        : size_{film.width(), film.height()},
           how_(how),
           brightness_(gamma),
-          trace_(trace),
-          order_(pixel_order(size.width, size.height)),
-          colors_(order_.size()),
+          tracer_(tracer),
+          film_(film),
+          order_(pixel_order(size_.width, size_.height)),
           looks_(order_.size()),
           refined_(order_.size()) {}
 
-    std::optional<std::vector<vec3>> run() {
-        if (!sample_middles())
-            return std::nullopt;
+    bool run() {
+        if (!tracer_.trace_middles(film_))
+            return false;
+        parallel_for(looks_.size(), kPixelGrain, [&](size_t first, size_t last) {
+            for (size_t pixel = first; pixel < last; ++pixel)
+                look_at(uint32_t(pixel));
+        });
         // A refined pixel may still differ from a neighbour that is not refined. POV-Ray refines
         // that one in the same round, we do so in the next.
         for (std::vector<uint32_t> pixels = rough(); !pixels.empty(); pixels = rough_beside(pixels))
             if (!refine(pixels))
-                return std::nullopt;
-        return std::move(colors_);
-    }
-
-private:
-    dvec2 corner(uint32_t pixel) const { return dvec2(pixel % size_.width, pixel / size_.width); }
-
-    bool sample_middles() {
-        for (size_t first = 0; first < order_.size(); first += points_.size()) {
-            points_.resize(std::min(kMaxPoints, order_.size() - first));
-            parallel_for(points_.size(), kPixelGrain, [&](size_t from, size_t to) {
-                for (size_t i = from; i < to; ++i)
-                    points_[i] = corner(order_[first + i]) + 0.5;
-            });
-            if (!trace())
                 return false;
-            parallel_for(points_.size(), kPixelGrain, [&](size_t from, size_t to) {
-                for (size_t i = from; i < to; ++i)
-                    set(order_[first + i], light_[i]);
-            });
-        }
         return true;
     }
 
+private:
     /// Returns the pixels that differ from a neighbour, in the order of tracing.
     std::vector<uint32_t> rough() const {
         const size_t w = size_.width, h = size_.height;
@@ -152,19 +137,19 @@ private:
     std::vector<uint32_t> rough_beside(const std::vector<uint32_t>& refined) const {
         const size_t w = size_.width;
         std::vector<uint32_t> pixels;
-        const auto look_at = [&](size_t i, size_t other) {
+        const auto compare = [&](size_t i, size_t other) {
             if (!refined_[other] && differ(i, other))
                 pixels.push_back(uint32_t(other));
         };
         for (const size_t i : refined) {
             if (i % w > 0)
-                look_at(i, i - 1);
+                compare(i, i - 1);
             if (i % w + 1 < w)
-                look_at(i, i + 1);
+                compare(i, i + 1);
             if (i >= w)
-                look_at(i, i - w);
-            if (i + w < colors_.size())
-                look_at(i, i + w);
+                compare(i, i - w);
+            if (i + w < looks_.size())
+                compare(i, i + w);
         }
         std::ranges::sort(pixels);
         const auto twice = std::ranges::unique(pixels);
@@ -183,15 +168,16 @@ private:
         for (size_t first = 0; first < pixels.size(); first += pixels_at_once) {
             const size_t count = std::min(pixels_at_once, pixels.size() - first);
             points_.resize(count * samples);
+            light_.resize(count);
             parallel_for(count, kPixelGrain / samples, [&](size_t from, size_t to) {
                 for (size_t i = from; i < to; ++i)
                     place_samples(pixels[first + i], std::span(points_).subspan(i * samples));
             });
-            if (!trace())
+            if (!tracer_.trace_points(points_, light_))
                 return false;
             parallel_for(count, kPixelGrain / samples, [&](size_t from, size_t to) {
                 for (size_t i = from; i < to; ++i)
-                    add(pixels[first + i], std::span(light_).subspan(i * samples, samples));
+                    add(pixels[first + i], light_[i], samples);
             });
         }
         return true;
@@ -203,34 +189,28 @@ private:
         for (uint32_t y = 0, sample = 0; y < side; ++y)
             for (uint32_t x = 0; x < side; ++x, ++sample) {
                 const dvec2 off = 0.5 + double(how_.jitter) * chance(pixel, sample);
-                points[sample] = corner(pixel) + (dvec2(x, y) + off) / double(side);
+                points[sample] = dvec2(pixel % size_.width, pixel / size_.width) +
+                                 (dvec2(x, y) + off) / double(side);
             }
     }
 
-    void add(uint32_t pixel, std::span<const vec3> light) {
-        vec3 sum = colors_[pixel];
-        for (const vec3& more : light)
-            sum += more;
-        set(pixel, sum / float(light.size() + 1));
+    /// light: the mean of so many samples.
+    void add(uint32_t pixel, const vec3& light, size_t samples) {
+        const dvec3 sum = film_.mean(pixel) + double(samples) * dvec3(light);
+        film_.restore(pixel, film_.sums_of(vec3(sum / double(samples + 1))));
+        look_at(pixel);
         refined_[pixel] = true;
     }
 
-    bool trace() {
-        light_.resize(points_.size());
-        return trace_(points_, light_);
-    }
-
-    void set(uint32_t pixel, const vec3& light) {
-        colors_[pixel] = light;
-        looks_[pixel] = looks_of(light, brightness_);
-    }
+    void look_at(uint32_t pixel) { looks_[pixel] = looks_of(vec3(film_.mean(pixel)), brightness_); }
 
     const ImageSize size_;
     const Antialias how_;
     const Brightness brightness_;
-    const TracePoints& trace_;
+    SampleTracer& tracer_;
+    Film& film_;
     const std::vector<uint32_t> order_; // in which pixels are traced
-    std::vector<vec3> colors_, looks_;  // of the pixels
+    std::vector<vec3> looks_;           // of the pixels
     std::vector<uint8_t> refined_;
     std::vector<dvec2> points_; // of one call, whose memory the next takes
     std::vector<vec3> light_;
@@ -249,15 +229,16 @@ struct Seen {
 
 class Subdivision {
 public:
-    Subdivision(const ImageSize& size, const Antialias& how, double gamma, const TracePoints& trace)
-        : size_(size),
+    Subdivision(const Antialias& how, double gamma, SampleTracer& tracer, Film& film)
+        : size_{film.width(), film.height()},
           how_(how),
           brightness_(gamma),
-          trace_(trace),
+          tracer_(tracer),
+          film_(film),
           cells_(1u << (how.depth - 1)),
-          columns_(uint64_t(size.width) * cells_ + 1) {}
+          columns_(uint64_t(size_.width) * cells_ + 1) {}
 
-    std::optional<std::vector<vec3>> run() {
+    bool run() {
         std::vector<Cell> cells;
         for (const uint32_t pixel : pixel_order(size_.width, size_.height))
             cells.push_back(cell_of(pixel));
@@ -265,7 +246,7 @@ public:
             want(cell);
         while (!cells.empty()) {
             if (!sample_wanted())
-                return std::nullopt;
+                return false;
             std::vector<Cell> quarters;
             for (const Cell& cell : cells)
                 if (is_divided(cell))
@@ -275,12 +256,13 @@ public:
                 want(quarter);
             cells = std::move(quarters);
         }
-        std::vector<vec3> colors(size_t(size_.width) * size_.height);
-        parallel_for(colors.size(), kPixelGrain, [&](size_t first, size_t last) {
-            for (size_t i = first; i < last; ++i)
-                colors[i] = mean(cell_of(uint32_t(i)));
-        });
-        return colors;
+        parallel_for(size_t(size_.width) * size_.height, kPixelGrain,
+                     [&](size_t first, size_t last) {
+                         Film::Answers answers(film_);
+                         for (size_t i = first; i < last; ++i)
+                             answers.close(uint32_t(i), mean(cell_of(uint32_t(i))));
+                     });
+        return true;
     }
 
 private:
@@ -311,7 +293,7 @@ private:
                     (dvec2(double(at % columns_), double(at / columns_)) + off) / double(cells_);
                 points[i] = glm::clamp(point, dvec2(0), dvec2(size_.width, size_.height));
             }
-            if (!trace_(points, light))
+            if (!tracer_.trace_points(points, light))
                 return false;
             for (size_t i = 0; i < points.size(); ++i)
                 samples_[wanted_[first + i]] = {light[i], looks_of(light[i], brightness_)};
@@ -358,7 +340,8 @@ private:
     const ImageSize size_;
     const Antialias how_;
     const Brightness brightness_;
-    const TracePoints& trace_;
+    SampleTracer& tracer_;
+    Film& film_;
     const uint32_t cells_; // per pixel, along each side
     const uint64_t columns_;
     std::unordered_map<uint64_t, Seen> samples_; // by key()
@@ -367,12 +350,15 @@ private:
 
 } // namespace
 
-std::optional<std::vector<vec3>> antialiased(const ImageSize& size, const Antialias& how,
-                                             double gamma, const TracePoints& trace) {
-    assert(how.depth >= 1 && how.depth <= kMaxAntialiasDepth);
-    if (how.method == Antialias::Method::Supersample)
-        return Supersampling(size, how, gamma, trace).run();
-    return Subdivision(size, how, gamma, trace).run();
+bool antialias(const Antialias& how, double gamma, SampleTracer& tracer, Film& film) {
+    assert(how.depth >= 1 && how.depth <= kMaxAntialiasDepth && film.samples() == 1);
+    Film picture(film.width(), film.height()); // which is not to be seen before it is done
+    const bool done = how.method == Antialias::Method::Supersample
+                          ? Supersampling(how, gamma, tracer, picture).run()
+                          : Subdivision(how, gamma, tracer, picture).run();
+    if (done)
+        film.take(std::move(picture));
+    return done;
 }
 
 } // namespace ovc

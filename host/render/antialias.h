@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Adaptive antialiasing by POV-Ray's two methods, which take more samples only where colors differ.
-// The tracing callback gets many points at once, so that batches stay large.
+// The tracer gets many points at once, so that batches stay large.
 // Source: the documentation of POV-Ray 3.7, section 3.2.8, "Tracing Options".
 #pragma once
 
 #include "core/scene.h"
+#include "host/film/film.h"
 
 #include <cstdint>
-#include <functional>
-#include <optional>
 #include <span>
-#include <vector>
 
 namespace ovc {
 
@@ -37,14 +35,21 @@ struct Antialias {
 
 inline constexpr uint32_t kMaxAntialiasDepth = 9;
 
-/// Writes the light at each of the points of the picture, which are in pixels from (0, 0), its top
-/// left corner. Returns false where it was stopped.
-using TracePoints = std::function<bool(std::span<const dvec2> points, std::span<vec3> light)>;
+/// What traces the samples of a picture. Its functions return false where they were stopped.
+class SampleTracer {
+public:
+    virtual ~SampleTracer() = default;
 
-/// Returns the colors of a picture's pixels, row by row from the top; nothing where tracing was
-/// stopped. how.depth is from 1 to kMaxAntialiasDepth. gamma: Scene::gamma, by which colors are
-/// compared as eyes do it.
-std::optional<std::vector<vec3>> antialiased(const ImageSize& size, const Antialias& how,
-                                             double gamma, const TracePoints& trace);
+    /// Renders a ray through the middle of each pixel onto the film.
+    virtual bool trace_middles(Film& film) = 0;
+    /// Writes the mean light of points of the picture, which are in pixels from (0, 0), its top
+    /// left corner: of the first points.size() / light.size() of them, the next, and so on.
+    virtual bool trace_points(std::span<const dvec2> points, std::span<vec3> light) = 0;
+};
+
+/// Renders a picture onto a film of one sample a pixel. Returns false where tracing was stopped;
+/// the film then has nothing to show. how.depth is from 1 to kMaxAntialiasDepth. gamma:
+/// Scene::gamma, by which colors are compared as eyes do it.
+bool antialias(const Antialias& how, double gamma, SampleTracer& tracer, Film& film);
 
 } // namespace ovc

@@ -9,26 +9,59 @@ namespace {
 
 using Method = Antialias::Method;
 
+/// Samples a function that gives the color at each point.
+template <class Color>
+class FunctionTracer : public SampleTracer {
+public:
+    explicit FunctionTracer(Color color) : color_(color) {}
+
+    bool trace_middles(Film& film) override {
+        for (uint32_t y = 0, i = 0; y < film.height(); ++y)
+            for (uint32_t x = 0; x < film.width(); ++x, ++i) {
+                film.add(i, color_(dvec2(x, y) + 0.5));
+                film.close(i);
+            }
+        return count(film.pixels_done());
+    }
+
+    bool trace_points(std::span<const dvec2> points, std::span<vec3> light) override {
+        const size_t each = points.size() / light.size();
+        EXPECT_EQ(light.size() * each, points.size());
+        for (size_t i = 0; i < light.size(); ++i) {
+            light[i] = vec3(0);
+            for (const dvec2& point : points.subspan(i * each, each))
+                light[i] += color_(point) / float(each);
+        }
+        return count(points.size());
+    }
+
+    size_t samples = 0;
+    size_t calls = 0;
+    size_t max_calls = SIZE_MAX;
+
+private:
+    bool count(size_t more) {
+        samples += more;
+        return ++calls < max_calls;
+    }
+
+    const Color color_;
+};
+
 struct Traced {
-    std::vector<vec3> colors;
+    std::vector<vec4> colors;
     size_t samples = 0;
     size_t calls = 0;
 };
 
-/// Returns the picture of a function that gives the color at each point.
-template <class Scene>
-Traced traced(const ImageSize& size, const Antialias& how, Scene scene, double gamma = 1) {
-    Traced traced;
-    const auto colors = antialiased(size, how, gamma, [&](auto points, auto light) {
-        for (size_t i = 0; i < points.size(); ++i)
-            light[i] = scene(points[i]);
-        traced.samples += points.size();
-        ++traced.calls;
-        return true;
-    });
-    EXPECT_TRUE(colors);
-    traced.colors = colors.value_or(std::vector<vec3>());
-    return traced;
+/// Returns the picture of the function.
+template <class Color>
+Traced traced(const ImageSize& size, const Antialias& how, Color color, double gamma = 1) {
+    FunctionTracer tracer(color);
+    Film film(size.width, size.height);
+    EXPECT_TRUE(antialias(how, gamma, tracer, film));
+    EXPECT_EQ(film.pixels_done(), uint64_t(size.width) * size.height);
+    return {film.image().pixels, tracer.samples, tracer.calls};
 }
 
 constexpr ImageSize kSize{8, 6};
@@ -101,11 +134,13 @@ TEST(Antialias, ManyRaysAreAskedForAtOnce) {
     EXPECT_LE(traced(size, {.method = Method::Subdivide}, ball).calls, 3u);
 }
 
-TEST(Antialias, StopsWhereTracingStops) {
-    size_t calls = 0;
-    const auto stop = [&](auto, auto) { return ++calls < 2; };
-    EXPECT_FALSE(antialiased(kSize, {.threshold = 0}, 1, stop));
-    EXPECT_EQ(calls, 2u);
+TEST(Antialias, ShowsNothingWhereTracingStops) {
+    FunctionTracer tracer(half_white);
+    tracer.max_calls = 2;
+    Film film(kSize.width, kSize.height);
+    EXPECT_FALSE(antialias({.threshold = 0}, 1, tracer, film));
+    EXPECT_EQ(tracer.calls, 2u);
+    EXPECT_EQ(film.pixels_done(), 0u);
 }
 
 } // namespace

@@ -91,69 +91,7 @@ static std::unique_ptr<Integrator> make_integrator(const Scene& scene, const Cam
 
 namespace {
 
-/// The passes of adaptive antialiasing. Each renders onto a film of its own, with a pixel for each
-/// point.
-class AdaptivePasses {
-public:
-    /// trace: renders rays through the points onto a film that has a pixel for each.
-    using Trace = std::function<Result<RenderReport>(std::span<const dvec2> points,
-                                                     const RenderObserver&, Film&)>;
-
-    AdaptivePasses(const Pinhole& pinhole, const RenderObserver& observe, Trace trace)
-        : pixels_(uint64_t(pinhole.width()) * pinhole.height()),
-          observe_(observe),
-          trace_(std::move(trace)) {}
-
-    /// Fills the film, unless it was stopped. The film has one sample a pixel.
-    Result<RenderReport> run(const Antialias& how, double gamma, Film& film) {
-        assert(film.samples() == 1);
-        const ImageSize size{film.width(), film.height()};
-        const auto colors = antialiased(
-            size, how, gamma, [&](auto points, auto light) { return pass(points, light); });
-        if (error_)
-            return *error_;
-        if (colors)
-            parallel_for(colors->size(), kPixelGrain, [&](size_t first, size_t last) {
-                Film::Answers answers(film);
-                for (size_t pixel = first; pixel < last; ++pixel)
-                    answers.close(uint32_t(pixel), (*colors)[pixel]);
-            });
-        report_.complete = colors.has_value();
-        return report_;
-    }
-
-private:
-    bool pass(std::span<const dvec2> points, std::span<vec3> light) {
-        Film film(uint32_t(points.size()), 1);
-        const RenderReport before = report_;
-        // Points count as pixels here, since most pictures take little more than one a pixel.
-        const RenderObserver observe = [&](const RenderReport& now) {
-            RenderReport all = before;
-            all += now;
-            all.pixels_done = std::min(all.pixels_done, pixels_);
-            return !observe_ || observe_(all);
-        };
-        const Result<RenderReport> done = trace_(points, observe, film);
-        if (!done) {
-            error_ = done.error();
-            return false;
-        }
-        report_ += *done;
-        parallel_for(light.size(), kPixelGrain, [&](size_t first, size_t last) {
-            for (size_t i = first; i < last; ++i)
-                light[i] = vec3(film.mean(uint32_t(i)));
-        });
-        return done->complete;
-    }
-
-    const uint64_t pixels_;
-    const RenderObserver& observe_;
-    const Trace trace_;
-    std::optional<Error> error_;
-    RenderReport report_;
-};
-
-/// Traces the camera rays of one picture, onto its film or those of its passes.
+/// Traces the camera rays of one picture, onto its film or others.
 class Tracing {
 public:
     Tracing(const Scene& scene, const Camera& camera, Backend& backend,
@@ -265,6 +203,62 @@ private:
     std::unique_ptr<Integrator> for_estimate_; // with other random numbers
 };
 
+/// The passes of adaptive antialiasing.
+class AdaptivePasses : public SampleTracer {
+public:
+    AdaptivePasses(Tracing& tracing, const RenderObserver& observe)
+        : tracing_(tracing),
+          pixels_(uint64_t(tracing.pinhole().width()) * tracing.pinhole().height()),
+          observe_(observe) {}
+
+    /// Fills the film, unless it was stopped.
+    Result<RenderReport> run(const Antialias& how, double gamma, Film& film) {
+        report_.complete = antialias(how, gamma, *this, film);
+        if (error_)
+            return *error_;
+        return report_;
+    }
+
+private:
+    bool trace_middles(Film& film) override { return pass(film, {}); }
+
+    bool trace_points(std::span<const dvec2> points, std::span<vec3> light) override {
+        if (points.empty())
+            return true;
+        Film film(uint32_t(light.size()), 1, uint32_t(points.size() / light.size()));
+        const bool goes_on = pass(film, points);
+        parallel_for(light.size(), kPixelGrain, [&](size_t first, size_t last) {
+            for (size_t i = first; i < last; ++i)
+                light[i] = vec3(film.mean(uint32_t(i)));
+        });
+        return goes_on;
+    }
+
+    bool pass(Film& film, std::span<const dvec2> points) {
+        const RenderReport before = report_;
+        // Points count as pixels here, since most pictures take little more than one a pixel.
+        const RenderObserver observe = [&](const RenderReport& now) {
+            RenderReport all = before;
+            all += now;
+            all.pixels_done = std::min(all.pixels_done, pixels_);
+            return !observe_ || observe_(all);
+        };
+        const Result<RenderReport> done = tracing_.render(film, {.to_all = true}, observe, points);
+        if (!done) {
+            error_ = done.error();
+            return false;
+        }
+        report_ += *done;
+        return done->complete;
+    }
+
+    Tracing& tracing_;
+    const uint64_t pixels_;
+    const RenderObserver& observe_;
+    std::optional<Error> error_;
+    RenderReport report_;
+};
+
 } // namespace
 
 static Result<RenderReport> render_by(Tracing& tracing, const RenderOptions& options, double gamma,
@@ -282,13 +276,7 @@ static Result<RenderReport> render_by(Tracing& tracing, const RenderOptions& opt
                                .keep = options.keep,
                                .keep_seconds = options.keep_seconds},
                               observe);
-    const auto render_points = [&](std::span<const dvec2> points, const RenderObserver& watch,
-                                   Film& to) {
-        return points.empty() ? RenderReport{.complete = true}
-                              : tracing.render(to, {.to_all = true}, watch, points);
-    };
-    return AdaptivePasses(tracing.pinhole(), observe, render_points)
-        .run(*options.antialias, gamma, film);
+    return AdaptivePasses(tracing, observe).run(*options.antialias, gamma, film);
 }
 
 Result<RenderReport> render_picture(const Scene& scene, const Camera& camera, Backend& backend,
