@@ -97,7 +97,11 @@ Ray Pinhole::ray(uint32_t x, uint32_t y, const dvec2& place, const dvec2& lens,
         return faces_->ray(part_.left + x, part_.top + y, place, sample);
     const dvec2 at = (dvec2(part_.left + x, part_.top + y) + place) /
                      dvec2(part_.picture.width, part_.picture.height);
-    Ray ray = straight_ray(at);
+    return ray_at(at, lens);
+}
+
+Ray Pinhole::ray_at(const dvec2& at, const dvec2& lens) const {
+    Ray ray = bent_ ? bent_ray(*bent_, eye_, {at.x - 0.5, 0.5 - at.y}) : straight_ray(at);
     if (lens_ && lens != dvec2(0)) {
         const dvec3 off = lens.x * lens_->right + lens.y * lens_->up;
         ray.org += off;
@@ -112,8 +116,6 @@ Ray Pinhole::ray(uint32_t x, uint32_t y, const dvec2& place, const dvec2& lens,
 }
 
 Ray Pinhole::straight_ray(const dvec2& at) const {
-    if (bent_)
-        return bent_ray(*bent_, eye_, {at.x - 0.5, 0.5 - at.y});
     const dvec3 in_plane = (2 * at.x - 1) * to_right_ + (1 - 2 * at.y) * to_top_;
     Ray ray;
     ray.org = orthographic_ ? eye_ + in_plane : eye_;

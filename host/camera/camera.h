@@ -61,6 +61,7 @@ public:
     const dvec3& right() const { return right_; }
 
 private:
+    Ray ray_at(const dvec2& at, const dvec2& lens) const; // at: in the picture, from 0 to 1
     Ray straight_ray(const dvec2& at) const;
 
     PicturePart part_;

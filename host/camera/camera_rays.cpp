@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <new>
 #include <numbers>
 #include <numeric>
 #include <utility>
@@ -144,7 +145,9 @@ void CameraRays::make(uint64_t first, size_t count, RayList<Path>& paths) const 
     parallel_for(count, kCameraGrain, [&](size_t from, size_t to) {
         for (size_t i = from; i < to; ++i) {
             const Place at = place(first + i);
-            paths.rays[before + i] = pinhole_.ray(at.x, at.y, at.within, at.lens, at.sample);
+            // Made where it stays: a copy would wait for the stores before it.
+            new (&paths.rays[before + i])
+                Ray(pinhole_.ray(at.x, at.y, at.within, at.lens, at.sample));
             paths.skip[before + i] = TriangleId();
             paths.purposes[before + i] = {
                 at.pixel, at.sample, 0, RayKind::Camera, false, false, vec3(1), 0, 0, cone_};

@@ -18,9 +18,10 @@ namespace {
 
 /// A batch has so many rays for each core. Their data stays in caches, and they go through so small
 /// a part of the picture that under a budget most find their pages in the pool (decision 19). A
-/// picture has a minimum of batches, or a lane would have nothing to do while the other traces.
+/// picture has a minimum of batches, as long as these are no trifles: or a lane would have nothing
+/// to do while the other traces, and small pictures would pay most for memory that is new.
 constexpr uint64_t kRaysACore = 1 << 14;
-constexpr uint64_t kMinBatches = 8;
+constexpr uint64_t kMinBatches = 32, kMinRays = 1024;
 
 /// The state that both lanes share: the camera's rays, and the backend, which answers one call at a
 /// time.
@@ -217,7 +218,8 @@ private:
 Result<RenderReport> render_batched(const Integrator& integrator, size_t lights,
                                     const CameraRays& camera, const Sight& sight, Backend& backend,
                                     size_t batch_rays, const RenderObserver& observe, Film& film) {
-    const uint64_t wanted = std::min(camera.size() / kMinBatches + 1, kRaysACore * thread_count());
+    const uint64_t wanted =
+        std::clamp(camera.size() / kMinBatches + 1, kMinRays, kRaysACore * thread_count());
     const size_t batch = size_t(std::min<uint64_t>(batch_rays, wanted));
     Work work(camera, sight, backend, observe, film);
     std::vector<std::future<void>> lanes(thread_count() == 1 ? 1 : 2);

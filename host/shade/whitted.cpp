@@ -390,11 +390,9 @@ void Whitted::light_up(const Light& light, uint32_t number, const Met& met, Film
     vec3 arriving = float(light_stride_) * met.weight * direct_light(light, met.surface);
     if (arriving == vec3(0))
         return;
-    Ray ray = shadow_ray(light, met.surface.position);
     const bool from_behind =
         glm::dot(towards_light(light, met.surface.position), met.surface.geometric_normal) < 0;
-    if (from_behind)
-        ray = shadow_ray(light, met.surface.beyond);
+    const Ray ray = shadow_ray(light, from_behind ? met.surface.beyond : met.surface.position);
     arriving *= share_of_air(light, ray);
     if (!shadows_ || light.shadowless) {
         film.add(met.pixel, arriving);
