@@ -130,7 +130,7 @@ def damage(pictures, file, level2):
     # Corners come before levels, which begin with all pages.
     for place, sentence in ((whole.find(b"ovc levels") + 64 + level2 // 2,
                              r"the page of leaf \d+ is damaged: its checksum is wrong"),
-                            (None, r"the corners of triangles \d+ to \d+ of mesh 0 are damaged")):
+                            (None, r"the corners of triangles \d+ to \d+ of mesh \d+ are damaged")):
         again = whole.copy()
         if place is None:  # all that a picture could show
             for at in range(MIB, whole.find(b"ovc levels") - MIB, 4096):
