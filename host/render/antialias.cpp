@@ -90,10 +90,7 @@ public:
     bool run() {
         if (!tracer_.trace_middles(film_))
             return false;
-        parallel_for(looks_.size(), kPixelGrain, [&](size_t first, size_t last) {
-            for (size_t pixel = first; pixel < last; ++pixel)
-                look_at(uint32_t(pixel));
-        });
+        look_at(order_);
         // A refined pixel may still differ from a neighbour that is not refined. POV-Ray refines
         // that one in the same round, we do so in the next.
         for (std::vector<uint32_t> pixels = rough(); !pixels.empty(); pixels = rough_beside(pixels))
@@ -175,10 +172,7 @@ private:
             });
             if (!tracer_.trace_points(points_, light_))
                 return false;
-            parallel_for(count, kPixelGrain / samples, [&](size_t from, size_t to) {
-                for (size_t i = from; i < to; ++i)
-                    add(pixels[first + i], light_[i], samples);
-            });
+            add(std::span(pixels).subspan(first, count), samples);
         }
         return true;
     }
@@ -194,15 +188,26 @@ private:
             }
     }
 
-    /// light: the mean of so many samples.
-    void add(uint32_t pixel, const vec3& light, size_t samples) {
-        const dvec3 sum = film_.mean(pixel) + double(samples) * dvec3(light);
-        film_.restore(pixel, film_.sums_of(vec3(sum / double(samples + 1))));
-        look_at(pixel);
-        refined_[pixel] = true;
+    /// Adds light_, each of which is the mean of so many samples, to these pixels.
+    void add(std::span<const uint32_t> pixels, size_t samples) {
+        std::vector<Film::Sums> sums(pixels.size());
+        parallel_for(pixels.size(), kPixelGrain, [&](size_t first, size_t last) {
+            for (size_t i = first; i < last; ++i) {
+                const dvec3 sum = film_.mean(pixels[i]) + double(samples) * dvec3(light_[i]);
+                sums[i] = film_.sums_of(vec3(sum / double(samples + 1)));
+                refined_[pixels[i]] = true;
+            }
+        });
+        film_.restore(pixels, sums);
+        look_at(pixels);
     }
 
-    void look_at(uint32_t pixel) { looks_[pixel] = looks_of(vec3(film_.mean(pixel)), brightness_); }
+    void look_at(std::span<const uint32_t> pixels) {
+        parallel_for(pixels.size(), kPixelGrain, [&](size_t first, size_t last) {
+            for (const uint32_t pixel : pixels.subspan(first, last - first))
+                looks_[pixel] = looks_of(vec3(film_.mean(pixel)), brightness_);
+        });
+    }
 
     const ImageSize size_;
     const Antialias how_;
