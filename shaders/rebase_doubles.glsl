@@ -19,9 +19,13 @@ WorldRay world_ray(int ray) {
 }
 
 // The map from the world to the frame behind a portal, and the part that lies there (layout.h).
+// Nothing here is an array of doubles: NVIDIA's compiler (driver 580) keeps those in memory of
+// floats, where a double's low word that looks like a subnormal float becomes 0.
 struct Portal {
     dvec3 origin; // in the world; 0 in the frame
-    dvec3 rows[3];
+    dvec3 row_x;
+    dvec3 row_y;
+    dvec3 row_z;
     dvec3 lo; // the box of what lies behind it, in the frame
     dvec3 hi;
     int tree; // the unit of its header
@@ -30,34 +34,29 @@ struct Portal {
 
 Portal portal_at(int number) {
     int texel = number * OVC_PORTAL_TEXELS;
-    dvec2 d[9];
-    for (int i = 0; i < 9; ++i)
-        d[i] = doubles_of(portal_texel(texel + i));
+    dvec2 a = doubles_of(portal_texel(texel)), b = doubles_of(portal_texel(texel + 1));
+    dvec2 c = doubles_of(portal_texel(texel + 2)), d = doubles_of(portal_texel(texel + 3));
+    dvec2 e = doubles_of(portal_texel(texel + 4)), f = doubles_of(portal_texel(texel + 5));
+    dvec2 g = doubles_of(portal_texel(texel + 6)), h = doubles_of(portal_texel(texel + 7));
+    dvec2 i = doubles_of(portal_texel(texel + 8));
     uvec4 last = portal_texel(texel + 9);
-    return Portal(dvec3(d[0], d[1].x), dvec3[3](dvec3(d[1].y, d[2]), dvec3(d[3], d[4].x), dvec3(d[4].y, d[5])),
-                  dvec3(d[6], d[7].x), dvec3(d[7].y, d[8]), int(last.x), last.y);
+    return Portal(dvec3(a, b.x), dvec3(b.y, c), dvec3(d, e.x), dvec3(e.y, f), dvec3(g, h.x),
+                  dvec3(h.y, i), int(last.x), last.y);
 }
 
-dvec3 times(dvec3 rows[3], dvec3 v) {
-    precise dvec3 result = dvec3(rows[0].x * v.x + rows[0].y * v.y + rows[0].z * v.z,
-                                 rows[1].x * v.x + rows[1].y * v.y + rows[1].z * v.z,
-                                 rows[2].x * v.x + rows[2].y * v.y + rows[2].z * v.z);
+double product(dvec3 row, dvec3 v) {
+    precise double result = row.x * v.x + row.y * v.y + row.z * v.z;
     return result;
 }
+dvec3 to_frame(Portal portal, dvec3 v) {
+    return dvec3(product(portal.row_x, v), product(portal.row_y, v), product(portal.row_z, v));
+}
 double largest(dvec3 v) { return max(max(abs(v.x), abs(v.y)), abs(v.z)); }
-
-// Returns the t's of org + t dir, t_min <= t <= t_max, inside the box; none if x > y.
-dvec2 inside_box(dvec3 org, dvec3 dir, dvec3 lo, dvec3 hi, double t_min, double t_max) {
-    dvec2 inside = dvec2(t_min, t_max);
-    bool outside = false;
-    for (int axis = 0; axis < 3; ++axis) {
-        bool still = dir[axis] == 0.0;
-        double inv_dir = 1.0 / (still ? 1.0 : dir[axis]);
-        precise double a = (lo[axis] - org[axis]) * inv_dir, b = (hi[axis] - org[axis]) * inv_dir;
-        outside = outside || (still && (org[axis] < lo[axis] || org[axis] > hi[axis]));
-        inside = still ? inside : dvec2(max(inside.x, min(a, b)), min(inside.y, max(a, b)));
-    }
-    return outside ? dvec2(1.0, 0.0) : inside;
+// Returns the largest component of to_frame(portal, v) if all terms are taken by their magnitudes.
+double largest_terms(Portal portal, dvec3 v) {
+    dvec3 size = abs(v);
+    return largest(dvec3(product(abs(portal.row_x), size), product(abs(portal.row_y), size),
+                         product(abs(portal.row_z), size)));
 }
 
 // Returns d rounded to nearest, whatever the driver's conversion does.
@@ -69,8 +68,8 @@ float nearest_float(double d) {
 }
 vec3 nearest_floats(dvec3 d) { return vec3(nearest_float(d.x), nearest_float(d.y), nearest_float(d.z)); }
 
-// A ray in a frame, in doubles. reach, dir_reach: the largest component of org and of dir if all
-// terms are taken by their magnitudes; roundings are in proportion to them.
+// A ray in a frame, in doubles. reach, dir_reach: largest_terms() of org and of dir; roundings are
+// in proportion to them.
 struct FrameRay {
     dvec3 org;
     dvec3 dir;
@@ -80,15 +79,29 @@ struct FrameRay {
 
 FrameRay frame_ray(WorldRay ray, Portal portal) {
     precise dvec3 from_origin = ray.org - portal.origin;
-    dvec3 sizes[3] = dvec3[3](abs(portal.rows[0]), abs(portal.rows[1]), abs(portal.rows[2]));
-    return FrameRay(times(portal.rows, from_origin), times(portal.rows, ray.dir),
-                    largest(times(sizes, abs(from_origin))), largest(times(sizes, abs(ray.dir))));
+    return FrameRay(to_frame(portal, from_origin), to_frame(portal, ray.dir),
+                    largest_terms(portal, from_origin), largest_terms(portal, ray.dir));
+}
+
+// Returns the t's in `inside` at which org + t dir lies between lo and hi; none if x > y.
+dvec2 between(dvec2 inside, double org, double dir, double lo, double hi) {
+    bool still = dir == 0.0;
+    double inv_dir = 1.0 / (still ? 1.0 : dir);
+    precise double a = (lo - org) * inv_dir, b = (hi - org) * inv_dir;
+    bool outside = still && (org < lo || org > hi);
+    dvec2 crossed = dvec2(max(inside.x, min(a, b)), min(inside.y, max(a, b)));
+    return outside ? dvec2(1.0, 0.0) : (still ? inside : crossed);
+}
+dvec2 inside_box(FrameRay ray, Portal portal, dvec2 inside) {
+    inside = between(inside, ray.org.x, ray.dir.x, portal.lo.x, portal.hi.x);
+    inside = between(inside, ray.org.y, ray.dir.y, portal.lo.y, portal.hi.y);
+    return between(inside, ray.org.z, ray.dir.z, portal.lo.z, portal.hi.z);
 }
 
 LocalRay local_ray(WorldRay ray, Portal portal) {
     FrameRay frame = frame_ray(ray, portal);
     dvec3 org = frame.org, dir = frame.dir;
-    dvec2 inside = inside_box(org, dir, portal.lo, portal.hi, ray.t_min, ray.t_max);
+    dvec2 inside = inside_box(frame, portal, dvec2(ray.t_min, ray.t_max));
     double speed = largest(dir);
     LocalRay local;
     local.meets = inside.x <= inside.y && ray.t_min <= ray.t_max;

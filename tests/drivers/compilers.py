@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """Validates the kernels' sources with glslang, for OpenGL 4.5 and 4.6 core, and makes SPIR-V of
-them, which spirv-val validates. Finds literals beyond their type's range, which glslang takes and
-NVIDIA's compiler refuses.
+them, which spirv-val validates. Finds what glslang takes and NVIDIA's compiler does not: literals beyond
+their type's range, which it refuses, and arrays of doubles, of which it loses bits.
 
 usage: compilers.py KERNEL_SOURCES [FOLDER]
 
@@ -32,9 +32,17 @@ def out_of_range(text):
     return [m[0] for m in numbers if float(m[1]) and not 1.17e-38 < float(m[1]) < 3.4028236e38]
 
 
+ARRAY = re.compile(r"\b(?:double|dvec[234]|dmat\w+)\s*(?:\w+\s*)?\[")
+
+
+def arrays_of_doubles(text):
+    return ARRAY.findall(re.sub("//.*", "", text))
+
+
 def check(source):
     """Yields for each compiler its name and its refusal of a source."""
     yield "literals", " ".join(out_of_range(source.read_text()))
+    yield "arrays of doubles", " ".join(arrays_of_doubles(source.read_text()))
     yield "GLSL 4.50", refusal_of("glslangValidator", source)
     later = source.with_name("later_" + source.name)
     later.write_text(source.read_text().replace("#version 450 core", "#version 460 core"))
@@ -62,6 +70,10 @@ def main():
             return 1
         if not out_of_range("double d = 1.0e300;") or out_of_range("double d = 1.0e300lf + 2.0;"):
             print("literals beyond the range of floats are not told from others")
+            return 1
+        if not all(map(arrays_of_doubles, ("dvec2 d[9];", "dvec3[3](a, b, c)"))) or \
+                arrays_of_doubles("dvec3 a; uvec4 b[9];"):
+            print("arrays of doubles are not told from others")
             return 1
         broken.unlink()
         sources = sorted(path for path in folder.iterdir()
