@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """Validates the kernels' sources with glslang, for OpenGL 4.5 and 4.6 core, and makes SPIR-V of
-them, which spirv-val validates. Finds what glslang takes and NVIDIA's compiler does not: literals beyond
-their type's range, which it refuses, and arrays of doubles, of which it loses bits.
+them, which spirv-val validates. Finds what glslang takes and NVIDIA's compiler does not: literals
+beyond their type's range, which it refuses, and arrays of doubles, of which it loses bits.
 
 usage: compilers.py KERNEL_SOURCES [FOLDER]
 

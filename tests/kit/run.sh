@@ -82,6 +82,9 @@ part two_level 120 ./in_shares.sh bin/plugin_test --gtest_filter="$two" --gtest_
 part kernels 60 $overcast bench $scene --only certified-fragment,certified-compute \
     --workloads primary,shadow,diffuse --size $size --repeats $repeats $for_device \
     --json results/kernels.json
+part frames 60 $overcast bench far-terrain --only certified-compute \
+    --workloads primary,shadow,diffuse --size $size --repeats $repeats $for_device \
+    --json results/frames.json
 part memory 90 $overcast bench $scene --only certified-compute --workloads primary,diffuse \
     --gpu-memory 64M,256M,1G,all --size $size --repeats $repeats $for_device \
     --json results/memory.json
