@@ -65,6 +65,20 @@ TEST_F(FirstTimeUser, ReadsHelpWithoutStrayEscapes) {
     }
 }
 
+/// The library of tests/broken_kernel differs from this one by a line of its kernel.
+TEST_F(FirstTimeUser, HearsFromTheDoctorWhetherADeviceAnswersRight) {
+    const auto right = bash("$o doctor");
+    if (right.output.find("device     none") != right.output.npos)
+        GTEST_SKIP() << right.output;
+    EXPECT_EQ(right.exit_code, 0) << right.output;
+    EXPECT_THAT(right.output, HasSubstr("answers    far-terrain: right, of "));
+    EXPECT_THAT(right.output, testing::Not(HasSubstr("computes wrong")));
+    const auto broken = bash("OVC_PLUGIN=" OVC_BINARY_DIR "/bin/libovercast-broken.so $o doctor");
+    EXPECT_EQ(broken.exit_code, 1) << broken.output;
+    EXPECT_THAT(broken.output, HasSubstr("rays are answered unlike double precision"));
+    EXPECT_THAT(broken.output, HasSubstr("to do      The device\'s driver computes wrong"));
+}
+
 /// Commands that trace on the software renderer say so once, and not with --quiet.
 TEST_F(FirstTimeUser, HearsOnceThatThereIsNoGpuWhereRaysAreTraced) {
     const std::string devices = bash("$o devices").output;

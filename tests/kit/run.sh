@@ -74,7 +74,7 @@ else
     tests='-Workarounds.StandInTheGuide' # it reads the documents
 fi
 
-part doctor 30 $overcast doctor
+part doctor 60 $overcast doctor $for_device
 part devices 30 $overcast devices
 part tests 90 ./in_shares.sh bin/gpu_test --gtest_filter="$tests" --gtest_brief=1
 part two_level 120 ./in_shares.sh bin/plugin_test --gtest_filter="$two" --gtest_brief=1
