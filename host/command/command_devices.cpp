@@ -28,7 +28,7 @@ static std::string describe(size_t number, const ovc_device_info& info) {
                        "   memory   {}, of which {} by default\n"
                        "   limits   textures of {} texels a side, buffer textures of {} texels\n",
                        number, info.renderer, info.is_software ? " (software)" : "",
-                       info.is_tested ? "" : " (untested: please tell us how it fares)",
+                       info.is_tested ? "" : " (untested: see what overcast doctor says)",
                        info.vendor, info.version, human_bytes(info.memory_bytes),
                        human_bytes(info.default_budget_bytes), human_count(info.max_texture_size),
                        human_count(info.max_buffer_texels));
