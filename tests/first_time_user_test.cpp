@@ -76,7 +76,7 @@ TEST_F(FirstTimeUser, HearsFromTheDoctorWhetherADeviceAnswersRight) {
     const auto broken = bash("OVC_PLUGIN=" OVC_BINARY_DIR "/bin/libovercast-broken.so $o doctor");
     EXPECT_EQ(broken.exit_code, 1) << broken.output;
     EXPECT_THAT(broken.output, HasSubstr("rays are answered unlike double precision"));
-    EXPECT_THAT(broken.output, HasSubstr("to do      The device\'s driver computes wrong"));
+    EXPECT_THAT(broken.output, HasSubstr("to do      The device's driver computes wrong"));
 }
 
 /// Commands that trace on the software renderer say so once, and not with --quiet.

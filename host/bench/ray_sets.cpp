@@ -34,6 +34,21 @@ static dvec3 cosine_direction(const dvec3& normal, uint32_t pixel) {
     return glm::length(direction) > 1e-6 ? glm::normalize(direction) : normal;
 }
 
+Result<RaySetAnswers> answers_of(const RaySet& set, Backend& backend) {
+    const bool nearest = set.query == RayQuery::Nearest;
+    RaySetAnswers answers;
+    answers.hits.resize(nearest ? set.rays.size() : 0);
+    answers.occluded.resize(nearest ? 0 : set.rays.size());
+    const Result<Done> done = nearest ? backend.intersect(set.rays, {}, answers.hits)
+                                      : backend.occluded(set.rays, {}, answers.occluded);
+    return done ? Result<RaySetAnswers>(std::move(answers)) : done.error();
+}
+
+Camera own_or_framing_camera(const Scene& scene, uint32_t width, uint32_t height) {
+    return scene.camera ? *scene.camera
+                        : framing_camera(hittable_bounds(scene.soup), width, height);
+}
+
 Result<std::vector<RaySet>> make_ray_sets(const Scene& scene, const Camera& camera, uint32_t width,
                                           uint32_t height, Backend& reference) {
     const Light light = scene.lights.empty() ? shoulder_light(camera) : scene.lights.front();

@@ -21,6 +21,18 @@ struct RaySet {
     std::vector<Ray> rays;
 };
 
+/// What a backend says of a set: a hit of each ray, or whether each is occluded, as the query asks.
+struct RaySetAnswers {
+    std::vector<Hit> hits;
+    std::vector<uint8_t> occluded;
+};
+
+/// Has the backend answer the set in one call. Error: the backend's.
+Result<RaySetAnswers> answers_of(const RaySet& set, Backend& backend);
+
+/// Returns the scene's own camera, or one that frames the whole scene, as `overcast render` does.
+Camera own_or_framing_camera(const Scene& scene, uint32_t width, uint32_t height);
+
 /// Returns three sets, each in the order of pixel_order():
 ///   primary   the nearest hit, one ray through the centre of each pixel;
 ///   shadow    occlusion, one ray from each hit pixel to the scene's first light, or to one over

@@ -9,7 +9,6 @@
 #include "host/doctor/machine_load.h"
 #include "host/ranks/shared_calls.h"
 #include "host/scene/scene_source.h"
-#include "host/scene/scene_summary.h"
 #include "host/shade/shade.h"
 #include "host/terminal/terminal_line.h"
 #include "kdtree/build.h"
@@ -25,9 +24,7 @@ namespace {
 /// Returns the scene's own camera, or the one that `overcast render` would place, and gives the
 /// scene the lights that `overcast render` would use. Error: the camera cannot be used.
 Result<Camera> dress(Scene& scene, const ImageSize& size) {
-    const Camera camera =
-        scene.camera ? *scene.camera
-                     : framing_camera(hittable_bounds(scene.soup), size.width, size.height);
+    const Camera camera = own_or_framing_camera(scene, size.width, size.height);
     scene.lights = placed_lights(scene, scene.lights, camera);
     const Result<Done> fine = check_camera(camera);
     return fine ? Result<Camera>(camera) : fine.error();

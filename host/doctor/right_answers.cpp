@@ -2,9 +2,7 @@
 #include "host/doctor/right_answers.h"
 
 #include "host/bench/ray_sets.h"
-#include "host/camera/camera.h"
 #include "host/scene/scene_source.h"
-#include "host/scene/scene_summary.h"
 
 #include <tuple>
 
@@ -18,22 +16,7 @@ bool same(const Hit& a, const Hit& b) {
     return std::tie(a.t, a.u, a.v, a.id) == std::tie(b.t, b.u, b.v, b.id);
 }
 
-struct Answers {
-    std::vector<Hit> hits;
-    std::vector<uint8_t> occluded;
-};
-
-Result<Answers> answers_of(const RaySet& set, Backend& backend) {
-    const bool nearest = set.query == RayQuery::Nearest;
-    Answers answers;
-    answers.hits.resize(nearest ? set.rays.size() : 0);
-    answers.occluded.resize(nearest ? 0 : set.rays.size());
-    const Result<Done> done = nearest ? backend.intersect(set.rays, {}, answers.hits)
-                                      : backend.occluded(set.rays, {}, answers.occluded);
-    return done ? Result<Answers>(std::move(answers)) : done.error();
-}
-
-uint64_t count_unlike(const Answers& a, const Answers& b) {
+uint64_t count_unlike(const RaySetAnswers& a, const RaySetAnswers& b) {
     uint64_t count = 0;
     for (size_t i = 0; i < a.hits.size(); ++i)
         count += !same(a.hits[i], b.hits[i]);
@@ -45,8 +28,7 @@ uint64_t count_unlike(const Answers& a, const Answers& b) {
 } // namespace
 
 Result<CheckedScene> check_answers(const Scene& scene, Backend& device, Backend& reference) {
-    const Camera camera =
-        scene.camera ? *scene.camera : framing_camera(hittable_bounds(scene.soup), kSide, kSide);
+    const Camera camera = own_or_framing_camera(scene, kSide, kSide);
     Result<std::vector<RaySet>> sets = make_ray_sets(scene, camera, kSide, kSide, reference);
     if (!sets)
         return sets.error();
@@ -56,10 +38,10 @@ Result<CheckedScene> check_answers(const Scene& scene, Backend& device, Backend&
     sets->push_back(std::move(*edges));
     CheckedScene checked;
     for (const RaySet& set : *sets) {
-        const Result<Answers> right = answers_of(set, reference);
+        const Result<RaySetAnswers> right = answers_of(set, reference);
         if (!right)
             return right.error();
-        const Result<Answers> found = answers_of(set, device);
+        const Result<RaySetAnswers> found = answers_of(set, device);
         if (!found)
             return found.error();
         checked.rays += set.rays.size();

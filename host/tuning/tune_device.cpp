@@ -3,9 +3,7 @@
 
 #include "host/backend/backend.h"
 #include "host/bench/ray_sets.h"
-#include "host/camera/camera.h"
 #include "host/scene/scene_source.h"
-#include "host/scene/scene_summary.h"
 
 #include <array>
 
@@ -15,14 +13,6 @@ namespace {
 constexpr std::array kScenes{"knot", "far-terrain", "fractal"}; // one frame, few, many
 constexpr uint32_t kSide = 512;                                 // pixels
 
-Result<Done> trace_set(const RaySet& set, Backend& backend) {
-    std::vector<Hit> hits(set.rays.size());
-    std::vector<uint8_t> occluded(set.rays.size());
-    if (set.query == RayQuery::Nearest)
-        return backend.intersect(set.rays, {}, hits);
-    return backend.occluded(set.rays, {}, occluded);
-}
-
 } // namespace
 
 Result<Done> tune_device(const std::string& device,
@@ -31,9 +21,7 @@ Result<Done> tune_device(const std::string& device,
         Result<Scene> scene = open_scene(name, LogSink());
         if (!scene)
             return scene.error();
-        const Camera camera = scene->camera
-                                  ? *scene->camera
-                                  : framing_camera(hittable_bounds(scene->soup), kSide, kSide);
+        const Camera camera = own_or_framing_camera(*scene, kSide, kSide);
         BackendOptions options;
         options.kind = BackendKind::TwoLevel;
         options.device = device;
@@ -55,8 +43,8 @@ Result<Done> tune_device(const std::string& device,
         if (!measured)
             return measured.error();
         for (const RaySet& set : *sets)
-            if (const Result<Done> done = trace_set(set, **measured); !done)
-                return done.error();
+            if (const auto answered = answers_of(set, **measured); !answered)
+                return answered.error();
     }
     return Done{};
 }
