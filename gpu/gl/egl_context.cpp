@@ -152,6 +152,8 @@ void describe_reads(DeviceInfo& info) {
         max_pool_buffers({GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS,
                           GL_MAX_FRAGMENT_SHADER_STORAGE_BLOCKS,
                           GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS})};
+    if (needs(Workaround::ConfusedTexels))
+        info.pool_buffers_by_reads[size_t(TexelReads::Textures)] = 0;
     const TexelReads usual = info.is_software ? TexelReads::Images : TexelReads::Textures;
     info.max_pool_buffers = std::max(1u, info.pool_buffers_by_reads[size_t(usual)]);
     GLint64 bytes = 0;

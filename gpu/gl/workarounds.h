@@ -17,6 +17,7 @@ enum class Workaround {
     NarrowFragments,
     RendererInSources,
     ReservedCacheIndex,
+    ConfusedTexels,
 };
 
 struct WorkaroundEntry {
@@ -29,7 +30,7 @@ struct WorkaroundEntry {
     std::string_view test;   // the test of that answer
 };
 
-inline constexpr std::array<WorkaroundEntry, 7> kWorkarounds{{
+inline constexpr std::array<WorkaroundEntry, 8> kWorkarounds{{
     {Workaround::PassedOver, "passed-over", "zink", "Mesa 22.3",
      "crashes when kernels are compiled (seen over lavapipe)",
      "the driver is passed over; another one is chosen by unsetting MESA_LOADER_DRIVER_OVERRIDE",
@@ -55,6 +56,9 @@ inline constexpr std::array<WorkaroundEntry, 7> kWorkarounds{{
      "Mesa maps the index of its shader cache, and dies of SIGBUS where the disk is full",
      "the index is reserved first, and a full disk is an error",
      "ShaderCache.AFullDiskIsToldBeforeTheDriverCrashesOnIt"},
+    {Workaround::ConfusedTexels, "confused-texels", "softpipe", "",
+     "takes one texel of a buffer texture for another where it has more than 16,384",
+     "kernels read images or storage buffers", "Drivers.AnswerAlike.softpipe"},
 }};
 
 /// The entry of a workaround.

@@ -65,6 +65,20 @@ TEST(KernelVariant, RefillsWhereABallotHasRoomForAllLanes) {
     EXPECT_TRUE(refills(default_variants(software())[RayKind{}]));
 }
 
+TEST(KernelVariant, ReadsNoTexturesWhereTheDriverConfusesThem) {
+    const auto reads_textures = [](const DeviceInfo& device) {
+        const ChosenVariants variants = default_variants(device);
+        size_t count = 0;
+        for (size_t kind = 0; kind < RayKind::kCount; ++kind)
+            count += variants[RayKind::of(kind)].reads == TexelReads::Textures;
+        return count;
+    };
+    DeviceInfo device = software();
+    EXPECT_GT(reads_textures(device), 0u);
+    device.pool_buffers_by_reads[size_t(TexelReads::Textures)] = 0; // Workaround::ConfusedTexels
+    EXPECT_EQ(reads_textures(device), 0u);
+}
+
 TEST(KernelVariant, ChangesOfSeveralAddUp) {
     const KernelVariant from;
     KernelVariant a = from, b = from;

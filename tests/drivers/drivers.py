@@ -5,9 +5,9 @@
 usage: drivers.py BUILD [--driver NAME] [--rays N]
 
 Prints the table of docs/guide/gpu.md: for each driver whether all variants of the kernel compile,
-and the hash of the hits of both kernels over the test scene soup-10, which must be that of the CPU
-KD-tree. A driver that the table of workarounds refuses must say so. With --driver one row is made;
-the script exits with 77 where its package is not installed.
+and the hash of the hits of both kernels in two test scenes, one of one frame and one of instances,
+which must be that of the CPU KD-tree. A driver that the table of workarounds refuses must say so.
+With --driver one row is made; the script exits with 77 where its package is not installed.
 """
 import argparse
 import dataclasses
@@ -20,6 +20,7 @@ import subprocess
 import sys
 import tempfile
 
+SCENES = ("soup-10", "fractal-3")
 LAVAPIPE = pathlib.Path("/usr/share/vulkan/icd.d/lvp_icd.x86_64.json")
 
 
@@ -48,7 +49,7 @@ DRIVERS = [
 
 
 def rays(count):
-    """Returns rays of doubles: from a sphere around the scene, to points within it."""
+    """Returns rays of doubles: from a sphere around the scenes, to points within them."""
     choose = random.Random(5)
     out = bytearray()
     for _ in range(count):
@@ -58,6 +59,10 @@ def rays(count):
         aim = [choose.uniform(-1, 1) for _ in range(3)]
         out += struct.pack("<8d", *org, 0, *(a - o for a, o in zip(aim, org)), float("inf"))
     return bytes(out)
+
+
+def hash_of(hits):
+    return hits and hashlib.sha256(hits).hexdigest()[:16]
 
 
 class Runs:
@@ -74,23 +79,27 @@ class Runs:
                               **options)
 
     def trace(self, driver, *options):
-        """Returns the hash of the hits, and what the command said where it failed."""
-        done = self.run([self.bin / "overcast", "trace", "--binary", *options, "soup-10"], driver,
-                        input=self.rays)
-        if done.returncode:
-            return None, done.stderr.decode().strip()
-        return hashlib.sha256(done.stdout).hexdigest()[:16], ""
+        """Returns the hits in all scenes, and what the command said where it failed."""
+        hits = bytes()
+        for scene in SCENES:
+            done = self.run([self.bin / "overcast", "trace", "--binary", *options, scene], driver,
+                            input=self.rays)
+            if done.returncode:
+                return None, done.stderr.decode().strip()
+            hits += done.stdout
+        return hits, ""
 
     def expected(self):
         """Returns the hash of the CPU's hits, and what is wrong where there is none."""
-        done = self.run([self.bin / "overcast", "trace", "--binary", "--backend", "cpu-kdtree",
-                         "soup-10"], Driver("cpu", {}), input=self.rays)
-        if done.returncode:
-            return None, done.stderr.decode().strip()
-        hits = sum(t < float("inf") for t, *_ in struct.iter_unpack("<3d2I", done.stdout))
-        if not len(self.rays) / 64 / 20 < hits:
-            return None, f"too few rays hit anything: {hits}"
-        return hashlib.sha256(done.stdout).hexdigest()[:16], ""
+        found, said = self.trace(Driver("cpu", {}), "--backend", "cpu-kdtree")
+        if not found:
+            return None, said
+        hits = [t < float("inf") for t, *_ in struct.iter_unpack("<3d2I", found)]
+        for scene, first in zip(SCENES, range(0, len(hits), len(hits) // len(SCENES))):
+            count = sum(hits[first:first + len(hits) // len(SCENES)])
+            if not len(self.rays) / 64 / 20 < count:
+                return None, f"too few rays hit anything of {scene}: {count}"
+        return hash_of(found), ""
 
     def compiles(self, driver):
         done = self.run([self.bin / "gpu_test", "--gtest_filter=KernelVariantsGl.*"], driver)
@@ -108,7 +117,8 @@ def row(runs, driver, expected):
         print(text, file=sys.stderr)
     hashes = []
     for kernel in driver.kernels:
-        found, said = runs.trace(driver, "--backend", "two-level", "--kernel", kernel)
+        hits, said = runs.trace(driver, "--backend", "two-level", "--kernel", kernel)
+        found = hash_of(hits)
         hashes.append(found)
         if found != expected:
             print(f"{driver.name}, {kernel}: {found}, not {expected}; {said}", file=sys.stderr)
