@@ -72,6 +72,11 @@ void isolated(FunctionRef<void(Context&)> loop) {
 
 void parallel_for(size_t count, size_t grain, FunctionRef<void(size_t, size_t)> body) {
     assert(grain > 0);
+    if (count <= grain) { // a task would wake a thread, which finds nothing to do
+        if (count > 0)
+            body(0, count);
+        return;
+    }
     using Range = oneapi::tbb::blocked_range<size_t>;
     isolated([&](Context& context) {
         oneapi::tbb::parallel_for(

@@ -18,6 +18,7 @@ namespace {
 
 constexpr size_t kMaxPoints = size_t(1) << 21; // in one call, to bound memory
 constexpr size_t kPixelGrain = 4096;           // pixels a task
+constexpr size_t kTile = 16; // pixels across, of tiles whose rays are traced together
 
 /// Returns a pseudo-random point in [-0.5, 0.5)^2 that depends on the numbers alone.
 /// Hash: Steele, Lea and Flood 2014, SplitMix64.
@@ -83,14 +84,16 @@ public:
           brightness_(gamma),
           tracer_(tracer),
           film_(film),
-          order_(pixel_order(size_.width, size_.height)),
-          looks_(order_.size()),
-          refined_(order_.size()) {}
+          looks_(size_t(size_.width) * size_.height),
+          refined_(looks_.size()) {}
 
     bool run() {
         if (!tracer_.trace_middles(film_))
             return false;
-        look_at(order_);
+        in_rows([&](size_t y) {
+            for (size_t i = y * size_.width; i < (y + 1) * size_.width; ++i)
+                look_at(uint32_t(i));
+        });
         // A refined pixel may still differ from a neighbour that is not refined. POV-Ray refines
         // that one in the same round, we do so in the next.
         for (std::vector<uint32_t> pixels = rough(); !pixels.empty(); pixels = rough_beside(pixels))
@@ -100,7 +103,7 @@ public:
     }
 
 private:
-    /// Returns the pixels that differ from a neighbour, in the order of tracing.
+    /// Returns the pixels that differ from a neighbour, tile by tile.
     std::vector<uint32_t> rough() const {
         const size_t w = size_.width, h = size_.height;
         enum : uint8_t { kRight = 1, kBelow = 2 }; // the neighbours that a pixel differs from
@@ -116,8 +119,12 @@ private:
                               (y > 0 && differs[i - w] & kBelow);
         });
         std::vector<uint32_t> pixels;
-        std::ranges::copy_if(order_, std::back_inserter(pixels),
-                             [&](uint32_t pixel) { return is_rough[pixel]; });
+        for (size_t top = 0; top < h; top += kTile)
+            for (size_t left = 0; left < w; left += kTile)
+                for (size_t y = top; y < std::min(top + kTile, h); ++y)
+                    for (size_t x = left; x < std::min(left + kTile, w); ++x)
+                        if (is_rough[y * w + x])
+                            pixels.push_back(uint32_t(y * w + x));
         return pixels;
     }
 
@@ -199,23 +206,20 @@ private:
             }
         });
         film_.restore(pixels, sums);
-        look_at(pixels);
-    }
-
-    void look_at(std::span<const uint32_t> pixels) {
         parallel_for(pixels.size(), kPixelGrain, [&](size_t first, size_t last) {
             for (const uint32_t pixel : pixels.subspan(first, last - first))
-                looks_[pixel] = looks_of(vec3(film_.mean(pixel)), brightness_);
+                look_at(pixel);
         });
     }
+
+    void look_at(uint32_t pixel) { looks_[pixel] = looks_of(vec3(film_.mean(pixel)), brightness_); }
 
     const ImageSize size_;
     const Antialias how_;
     const Brightness brightness_;
     SampleTracer& tracer_;
     Film& film_;
-    const std::vector<uint32_t> order_; // in which pixels are traced
-    std::vector<vec3> looks_;           // of the pixels
+    std::vector<vec3> looks_; // of the pixels
     std::vector<uint8_t> refined_;
     std::vector<dvec2> points_; // of one call, whose memory the next takes
     std::vector<vec3> light_;
