@@ -39,10 +39,40 @@ int segments_within(double tolerance) {
     return std::max(8, 4 * int(std::ceil(std::numbers::pi / std::sqrt(tolerance) / 4)));
 }
 
-int choose_segments(const Gatherer& gatherer, std::optional<double> tolerance) {
+/// Returns whether the look of a surface depends on the place.
+bool is_patterned(const Cover& cover, const Scene& scene) {
+    if (cover.holes != kNone)
+        return true;
+    const auto any_pattern = [&](const ovc::Material& m) {
+        return m.texture || m.bump || m.normal_map || m.maps || m.mix || m.under != kNone;
+    };
+    const ovc::Material& outside = scene.materials[cover.material];
+    return any_pattern(outside) ||
+           (outside.inside != kNone && any_pattern(scene.materials[outside.inside]));
+}
+
+/// Returns whether any of the shapes that are cut the finer the more segments there are is so.
+template <class Is>
+bool any_round(const Gatherer& gatherer, Is is) {
+    const auto is_one = [&](const auto& drawn) {
+        if (std::holds_alternative<EndlessShape>(drawn.object->shape))
+            return is(Shape{}, drawn.cover);
+        const Shape* const shape = std::get_if<Shape>(&drawn.object->shape);
+        return shape && shape->triangles(1) != shape->triangles(0) && is(*shape, drawn.cover);
+    };
+    const auto has_one = [&](const SolidLeaf& leaf) {
+        return std::ranges::any_of(leaf.skins, is_one);
+    };
+    return std::ranges::any_of(gatherer.placed, is_one) ||
+           std::ranges::any_of(gatherer.solids, [&](const Solid& solid) {
+               return std::ranges::any_of(solid.leaves, has_one);
+           });
+}
+
+int choose_segments(const Gatherer& gatherer, std::optional<double> tolerance, int fine) {
     if (tolerance)
         return segments_within(*tolerance);
-    int segments = kFineSegments;
+    int segments = fine;
     if (triangles_at(gatherer, segments) - triangles_at(gatherer, 0) > kMaxFineTriangles)
         segments = kMaxSegments;
     while (segments > 8 &&
@@ -50,6 +80,20 @@ int choose_segments(const Gatherer& gatherer, std::optional<double> tolerance) {
         segments = std::max(8, segments * 3 / 4 / 4 * 4);
     assert(segments >= 8 && segments % 4 == 0);
     return segments;
+}
+
+/// Returns pieces with corners on circles where a tolerance or the patterns of round shapes ask for
+/// places; else pieces whose outlines err less, and of which circles alone need fewer.
+CirclePieces choose_pieces(const Gatherer& gatherer, const Look& look, const Scene& scene) {
+    const auto is_patterned_one = [&](const Shape&, const Cover& cover) {
+        return is_patterned(cover, scene);
+    };
+    if (look.tolerance || any_round(gatherer, is_patterned_one))
+        return {choose_segments(gatherer, look.tolerance, kFineSegments)};
+    const bool others =
+        any_round(gatherer, [](const Shape& s, const Cover&) { return !s.of_circles; });
+    return as_large_as_circles(
+        choose_segments(gatherer, {}, others ? kFineSegments : kFineSegmentsOfCircles));
 }
 
 void require_at_most(uint64_t most, const Gatherer& gatherer, int segments, const Place& at) {
@@ -62,7 +106,7 @@ void require_at_most(uint64_t most, const Gatherer& gatherer, int segments, cons
 Box box_of(const Gatherer& gatherer, int segments) {
     Box box;
     for (const Solid& solid : gatherer.solids) {
-        const Box own = bounds_of(solid, segments);
+        const Box own = bounds_of(solid, {segments});
         if (is_finite(own.lo) && is_finite(own.hi))
             box.add(moved(own, solid.placed));
         else if (!own.empty())
@@ -258,7 +302,7 @@ private:
     std::map<MeshKey, Batch> all_;
 };
 
-void add_solids(const std::vector<Solid>& solids, int segments, const Box& world,
+void add_solids(const std::vector<Solid>& solids, const CirclePieces& pieces, const Box& world,
                 Batches& batches) {
     constexpr size_t kAtOnce = 64; // so that not all solids are in memory twice
     const Box reach = reach_of_solids(world);
@@ -268,7 +312,7 @@ void add_solids(const std::vector<Solid>& solids, int segments, const Box& world
         parallel_for(parts.size(), 1, [&](size_t first, size_t last) {
             for (size_t i = first; i < last; ++i) {
                 const Solid& solid = solids[groups[start + i][0]];
-                parts[i] = evaluate(solid, segments, moved(reach, glm::inverse(solid.placed)));
+                parts[i] = evaluate(solid, pieces, moved(reach, glm::inverse(solid.placed)));
             }
         });
         for (size_t i = 0; i < parts.size(); ++i)
@@ -290,18 +334,19 @@ void flatten(const std::vector<DrawnObject>& objects, const Look& look, Scene& s
         gatherer.gather(*object, {.texture = defaults.get()});
     const std::vector<Placed>& placed = gatherer.placed;
 
-    const int segments = choose_segments(gatherer, look.tolerance);
-    require_at_most(look.max_triangles, gatherer, segments, {});
+    const CirclePieces pieces = choose_pieces(gatherer, look, scene);
+    require_at_most(look.max_triangles, gatherer, pieces.segments, {});
     const Box box = box_of(gatherer, 8);
     Batches batches(gatherer.holes, chunk_origin(box, 16));
     Facets facets;
+    facets.circle_radius = pieces.radius;
     for (const Placed& p : placed)
         if (const Shape* shape = std::get_if<Shape>(&p.object->shape)) {
             facets.clear();
-            shape->cut(segments, p.object->open, facets);
+            shape->cut(pieces.segments, p.object->open, facets);
             batches.add(facets, p);
         }
-    add_solids(gatherer.solids, segments, world_of(box, look), batches);
+    add_solids(gatherer.solids, pieces, world_of(box, look), batches);
     // Where a plane and another surface are in one place, the first mesh is seen: povray's planes
     // hide what lies in them.
     const Box world = world_of(box, look);
@@ -347,7 +392,7 @@ static constexpr size_t kMaxExactParts = 256;
 CutObject cut_object(const Object& object, uint64_t max_triangles) {
     const ObjectAlone alone(object, max_triangles);
     const Gatherer& gatherer = alone.gatherer;
-    const int segments = choose_segments(gatherer, alone.look.tolerance);
+    const int segments = choose_segments(gatherer, alone.look.tolerance, kFineSegments);
     require_at_most(max_triangles, gatherer, segments, object.place);
     CutObject cut;
     Facets facets;
@@ -370,7 +415,7 @@ CutObject cut_object(const Object& object, uint64_t max_triangles) {
     const Box reach = reach_of_solids(world_of(box_of(gatherer, 8), alone.look));
     for (const Solid& solid : gatherer.solids)
         for (const SolidPart& part :
-             evaluate(solid, segments, moved(reach, glm::inverse(solid.placed))))
+             evaluate(solid, {segments}, moved(reach, glm::inverse(solid.placed))))
             add_finite(part.facets, {solid.object, solid.placed, false, {}, kSeenByAll},
                        cut.facets);
     return cut;
@@ -383,7 +428,8 @@ Box bounds_of(const Object& object, uint64_t max_triangles) {
         if (std::holds_alternative<PlaneShape>(p.object->shape))
             return {dvec3(-1e10), dvec3(1e10)};
     for (const Solid& solid : gatherer.solids)
-        if (const Box around = bounds_of(solid, 8); !around.empty() && !is_finite(around.extent()))
+        if (const Box around = bounds_of(solid, {8});
+            !around.empty() && !is_finite(around.extent()))
             return {dvec3(-1e10), dvec3(1e10)};
     Box box = box_of(gatherer, 32);
     if (box.empty())

@@ -33,8 +33,10 @@ void flatten(const std::vector<DrawnObject>& objects, const Look& look, Scene& s
 /// scene's round shapes would have more than kMaxRoundTriangles triangles.
 inline constexpr int kMaxSegments = 96;
 inline constexpr double kMaxRoundTriangles = 3e6;
-/// But a scene whose round shapes are few has this many, so that edges lie where they should.
+/// But a scene whose round shapes are few has this many, so that edges lie where they should; fewer
+/// where polygons are as large as the circles and there are no other curves.
 inline constexpr int kFineSegments = 192;
+inline constexpr int kFineSegmentsOfCircles = 120;
 inline constexpr double kMaxFineTriangles = 150'000;
 
 /// A plane reaches this many times as far as the scene, or as its distance from the scene if that

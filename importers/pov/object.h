@@ -21,6 +21,7 @@ struct Shape {
     double per_square = 0; // x segments^2
     double per_segment = 0;
     std::optional<RoundShape> exact; // of round shapes that have formulas
+    bool of_circles = false;         // its curves are circles alone
     /// Lead from the shape's space to its texture coordinates, as x and y. Empty: they are x and y
     /// of the world, or the corners have some.
     std::vector<TextureStep> to_uv;

@@ -35,4 +35,9 @@ dvec2 on_circle(int step, int segments) {
     }
 }
 
+CirclePieces as_large_as_circles(int segments) {
+    const double step = 2 * std::numbers::pi / segments;
+    return {segments, std::sqrt(step / std::sin(step))};
+}
+
 } // namespace ovc::pov

@@ -17,8 +17,9 @@ struct Corner {
 /// Triangles of three corners each, counterclockwise seen from outside. Normals point outside.
 struct Facets {
     std::vector<Corner> corners;
-    std::vector<vec2> uv; // texture coordinates of the corners, or empty
-    bool smooth = false;  // whether some corner has a normal of its own
+    std::vector<vec2> uv;     // texture coordinates of the corners, or empty
+    bool smooth = false;      // whether some corner has a normal of its own
+    double circle_radius = 1; // CirclePieces::radius of what is added
 
     /// Adds a flat triangle, unless two of its corners are the same, as at a pole or a seam.
     /// Returns whether it was added.
@@ -65,5 +66,15 @@ struct Facets {
 /// Returns the point of the unit circle that is `step` of `segments` steps from (1, 0). It is exact
 /// on the axes, and the same for steps a whole turn apart. step: from 0; segments: a multiple of 4.
 dvec2 on_circle(int step, int segments);
+
+/// How circles become polygons.
+struct CirclePieces {
+    int segments;      // of a circle; a multiple of 4, at least 8
+    double radius = 1; // of the polygon's corners, in the circle's: 1 for corners on it
+};
+
+/// Returns pieces whose polygon has the circle's area. Outlines of round shapes then lie as far
+/// outside of the true ones as inside, and off by a third of what corners on the circle make of it.
+CirclePieces as_large_as_circles(int segments);
 
 } // namespace ovc::pov

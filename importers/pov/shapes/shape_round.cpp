@@ -29,8 +29,10 @@ void add_grid(int columns, int rows, At&& at, Facets& out) {
     }
 }
 
-Shape curved(double per_square, double per_segment, SharedFunction<void(int, bool, Facets&)> cut) {
+Shape curved(double per_square, double per_segment, SharedFunction<void(int, bool, Facets&)> cut,
+             bool of_circles = true) {
     Shape shape;
+    shape.of_circles = of_circles;
     shape.cut = std::move(cut);
     shape.per_square = per_square;
     shape.per_segment = per_segment;
@@ -56,10 +58,12 @@ Shape frustum(Reader& reader, const dvec3& base, double base_radius, const dvec3
         dvec3 u, v;
         across(axis, u, v);
         const double slant = (base_radius - cap_radius) / glm::dot(axis, axis);
+        const double base_reach = out.circle_radius * base_radius;
+        const double cap_reach = out.circle_radius * cap_radius;
         const auto corner = [&](int column, int row) -> Corner {
             const dvec2 p = on_circle(column, segments);
             const dvec3 outward = p.x * u + p.y * v;
-            return {row ? cap + cap_radius * outward : base + base_radius * outward,
+            return {row ? cap + cap_reach * outward : base + base_reach * outward,
                     outward + slant * axis};
         };
         add_grid(segments, 1, corner, out);
@@ -94,7 +98,7 @@ Shape parse_sphere(Reader& reader) {
                 const dvec2 around = on_circle(column, segments);
                 const dvec2 up = on_circle(row + 3 * segments / 4, segments);
                 const dvec3 n(up.x * around.x, up.y, -up.x * around.y);
-                return {center + radius * n, n};
+                return {center + out.circle_radius * radius * n, n};
             },
             out);
     });
@@ -137,7 +141,7 @@ Shape parse_torus(Reader& reader) {
                 const dvec2 tube = on_circle(row, segments);
                 const dvec3 outward(around.x, 0, -around.y);
                 const dvec3 n = tube.x * outward + dvec3(0, tube.y, 0);
-                return {major * outward + minor * n, n};
+                return {out.circle_radius * (major * outward + minor * n), n};
             },
             out);
     });
@@ -161,7 +165,8 @@ Shape parse_disc(Reader& reader) {
         across(normal, u, v);
         for (int i = 0; i < segments; ++i) {
             const dvec2 p = on_circle(i, segments), q = on_circle(i + 1, segments);
-            const dvec3 a = p.x * u + p.y * v, b = q.x * u + q.y * v;
+            const dvec3 a = out.circle_radius * (p.x * u + p.y * v);
+            const dvec3 b = out.circle_radius * (q.x * u + q.y * v);
             out.add_quad(center + hole * a, center + radius * a, center + radius * b,
                          center + hole * b);
         }
@@ -172,24 +177,28 @@ Shape parse_superellipsoid(Reader& reader) {
     const dvec2 exponents = parse_vector2(reader);
     if (!(exponents.x > 0 && exponents.y > 0))
         reader.fail(reader.place(), "found a superellipsoid whose exponents are not above 0");
-    return curved(1, 0, [=](int segments, bool, Facets& out) {
-        const double east = exponents.x, north = exponents.y;
-        add_grid(
-            segments, segments / 2,
-            [&](int column, int row) -> Corner {
-                const dvec2 around = on_circle(column, segments);
-                const dvec2 up = on_circle(row + 3 * segments / 4, segments);
-                const auto point = [&](double e, double n) {
-                    const double wide = signed_power(up.x, n);
-                    return dvec3(wide * signed_power(around.x, e), wide * signed_power(around.y, e),
-                                 signed_power(up.y, n));
-                };
-                // With an exponent of 2 or more the gradient is infinite, or undefined, at a ridge.
-                const bool ridged = east >= 2 || north >= 2;
-                return {point(east, north), ridged ? dvec3(0) : point(2 - east, 2 - north)};
-            },
-            out);
-    });
+    return curved(
+        1, 0,
+        [=](int segments, bool, Facets& out) {
+            const double east = exponents.x, north = exponents.y;
+            add_grid(
+                segments, segments / 2,
+                [&](int column, int row) -> Corner {
+                    const dvec2 around = on_circle(column, segments);
+                    const dvec2 up = on_circle(row + 3 * segments / 4, segments);
+                    const auto point = [&](double e, double n) {
+                        const double wide = signed_power(up.x, n);
+                        return dvec3(wide * signed_power(around.x, e),
+                                     wide * signed_power(around.y, e), signed_power(up.y, n));
+                    };
+                    // With an exponent of 2 or more the gradient is infinite, or undefined, at a
+                    // ridge.
+                    const bool ridged = east >= 2 || north >= 2;
+                    return {point(east, north), ridged ? dvec3(0) : point(2 - east, 2 - north)};
+                },
+                out);
+        },
+        /* of_circles= */ false);
 }
 
 } // namespace ovc::pov

@@ -80,7 +80,7 @@ void revolve(const std::vector<ProfilePoint>& profile, int segments, const dvec2
     const auto corner = [&](const ProfilePoint& p, int step) -> Corner {
         const dvec2 c = on_circle(step, segments);
         const dvec3 outward(c.x, 0, -c.y);
-        return {p.at.x * outward + dvec3(0, p.at.y, 0),
+        return {out.circle_radius * p.at.x * outward + dvec3(0, p.at.y, 0),
                 p.direction.y * outward - dvec3(0, p.direction.x, 0)};
     };
     for (size_t i = 0; i + 1 < profile.size(); ++i)
@@ -199,7 +199,7 @@ Shape parse_sor(Reader& reader) {
             for (const bool top : {false, true}) {
                 const dvec2 at = (top ? profile.back() : profile.front()).at;
                 const auto corner = [&](int s) {
-                    const dvec2 c = on_circle(s, segments);
+                    const dvec2 c = out.circle_radius * on_circle(s, segments);
                     return dvec3(at.x * c.x, at.y, -at.x * c.y);
                 };
                 out.add(corner(0), corner(top ? step : step + 1), corner(top ? step + 1 : step));
