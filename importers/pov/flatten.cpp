@@ -53,20 +53,11 @@ bool is_patterned(const Cover& cover, const Scene& scene) {
 
 /// Returns whether any of the shapes that are cut the finer the more segments there are is so.
 template <class Is>
-bool any_round(const Gatherer& gatherer, Is is) {
-    const auto is_one = [&](const auto& drawn) {
-        if (std::holds_alternative<EndlessShape>(drawn.object->shape))
-            return is(Shape{}, drawn.cover);
-        const Shape* const shape = std::get_if<Shape>(&drawn.object->shape);
-        return shape && shape->triangles(1) != shape->triangles(0) && is(*shape, drawn.cover);
-    };
-    const auto has_one = [&](const SolidLeaf& leaf) {
-        return std::ranges::any_of(leaf.skins, is_one);
-    };
-    return std::ranges::any_of(gatherer.placed, is_one) ||
-           std::ranges::any_of(gatherer.solids, [&](const Solid& solid) {
-               return std::ranges::any_of(solid.leaves, has_one);
-           });
+bool any_round(const std::vector<Placed>& placed, Is is) {
+    return std::ranges::any_of(placed, [&](const Placed& p) {
+        const Shape* const shape = std::get_if<Shape>(&p.object->shape);
+        return shape && shape->triangles(1) != shape->triangles(0) && is(*shape, p.cover);
+    });
 }
 
 int choose_segments(const Gatherer& gatherer, std::optional<double> tolerance, int fine) {
@@ -83,15 +74,16 @@ int choose_segments(const Gatherer& gatherer, std::optional<double> tolerance, i
 }
 
 /// Returns pieces with corners on circles where a tolerance or the patterns of round shapes ask for
-/// places; else pieces whose outlines err less, and of which circles alone need fewer.
+/// places, or where solids do, whose corners are rounded to steps of their size; else pieces whose
+/// outlines err less, and of which circles alone need fewer.
 CirclePieces choose_pieces(const Gatherer& gatherer, const Look& look, const Scene& scene) {
     const auto is_patterned_one = [&](const Shape&, const Cover& cover) {
         return is_patterned(cover, scene);
     };
-    if (look.tolerance || any_round(gatherer, is_patterned_one))
+    if (look.tolerance || !gatherer.solids.empty() || any_round(gatherer.placed, is_patterned_one))
         return {choose_segments(gatherer, look.tolerance, kFineSegments)};
-    const bool others =
-        any_round(gatherer, [](const Shape& s, const Cover&) { return !s.of_circles; });
+    const bool others = any_round(
+        gatherer.placed, [](const Shape& shape, const Cover&) { return !shape.of_circles; });
     return as_large_as_circles(
         choose_segments(gatherer, {}, others ? kFineSegments : kFineSegmentsOfCircles));
 }
@@ -106,7 +98,7 @@ void require_at_most(uint64_t most, const Gatherer& gatherer, int segments, cons
 Box box_of(const Gatherer& gatherer, int segments) {
     Box box;
     for (const Solid& solid : gatherer.solids) {
-        const Box own = bounds_of(solid, {segments});
+        const Box own = bounds_of(solid, segments);
         if (is_finite(own.lo) && is_finite(own.hi))
             box.add(moved(own, solid.placed));
         else if (!own.empty())
@@ -302,7 +294,7 @@ private:
     std::map<MeshKey, Batch> all_;
 };
 
-void add_solids(const std::vector<Solid>& solids, const CirclePieces& pieces, const Box& world,
+void add_solids(const std::vector<Solid>& solids, int segments, const Box& world,
                 Batches& batches) {
     constexpr size_t kAtOnce = 64; // so that not all solids are in memory twice
     const Box reach = reach_of_solids(world);
@@ -312,7 +304,7 @@ void add_solids(const std::vector<Solid>& solids, const CirclePieces& pieces, co
         parallel_for(parts.size(), 1, [&](size_t first, size_t last) {
             for (size_t i = first; i < last; ++i) {
                 const Solid& solid = solids[groups[start + i][0]];
-                parts[i] = evaluate(solid, pieces, moved(reach, glm::inverse(solid.placed)));
+                parts[i] = evaluate(solid, segments, moved(reach, glm::inverse(solid.placed)));
             }
         });
         for (size_t i = 0; i < parts.size(); ++i)
@@ -346,7 +338,7 @@ void flatten(const std::vector<DrawnObject>& objects, const Look& look, Scene& s
             shape->cut(pieces.segments, p.object->open, facets);
             batches.add(facets, p);
         }
-    add_solids(gatherer.solids, pieces, world_of(box, look), batches);
+    add_solids(gatherer.solids, pieces.segments, world_of(box, look), batches);
     // Where a plane and another surface are in one place, the first mesh is seen: povray's planes
     // hide what lies in them.
     const Box world = world_of(box, look);
@@ -415,7 +407,7 @@ CutObject cut_object(const Object& object, uint64_t max_triangles) {
     const Box reach = reach_of_solids(world_of(box_of(gatherer, 8), alone.look));
     for (const Solid& solid : gatherer.solids)
         for (const SolidPart& part :
-             evaluate(solid, {segments}, moved(reach, glm::inverse(solid.placed))))
+             evaluate(solid, segments, moved(reach, glm::inverse(solid.placed))))
             add_finite(part.facets, {solid.object, solid.placed, false, {}, kSeenByAll},
                        cut.facets);
     return cut;
@@ -428,8 +420,7 @@ Box bounds_of(const Object& object, uint64_t max_triangles) {
         if (std::holds_alternative<PlaneShape>(p.object->shape))
             return {dvec3(-1e10), dvec3(1e10)};
     for (const Solid& solid : gatherer.solids)
-        if (const Box around = bounds_of(solid, {8});
-            !around.empty() && !is_finite(around.extent()))
+        if (const Box around = bounds_of(solid, 8); !around.empty() && !is_finite(around.extent()))
             return {dvec3(-1e10), dvec3(1e10)};
     Box box = box_of(gatherer, 32);
     if (box.empty())

@@ -37,7 +37,6 @@ std::vector<uint8_t> hidden_caps(const Shape& shape, int segments, const Facets&
         return all;
     };
     Facets open;
-    open.circle_radius = closed.circle_radius;
     shape.cut(segments, /* open= */ true, open);
     std::map<std::array<double, 9>, int> shown;
     for (size_t t = 0; t < open.corners.size(); t += 3)
@@ -112,19 +111,17 @@ void turn_outward(CutLeaf& leaf) {
 
 /// How finely shapes are cut.
 struct Fineness {
-    CirclePieces pieces;
-    int cells; // of a field
+    int segments; // of a circle
+    int cells;    // of a field
 
-    explicit Fineness(const CirclePieces& of_circles)
-        : pieces(of_circles), cells(field_cells(of_circles.segments)) {}
+    explicit Fineness(int pieces) : segments(pieces), cells(field_cells(pieces)) {}
 };
 
 CutLeaf cut_leaf(const SolidLeaf& leaf, const Fineness& fineness, const Box& reach) {
-    const int segments = fineness.pieces.segments;
+    const int segments = fineness.segments;
     CutLeaf cut;
     for (const SolidLeaf::Skin& skin : leaf.skins) {
         Facets facets;
-        facets.circle_radius = fineness.pieces.radius;
         std::vector<uint8_t> hidden;
         if (const auto* shape = std::get_if<Shape>(&skin.object->shape)) {
             shape->cut(segments, /* open= */ false, facets);
@@ -197,13 +194,13 @@ Box without_far_sides(Box box) {
     return box;
 }
 
-Box bounds_of_leaf(const SolidLeaf& leaf, const CirclePieces& pieces) {
+Box bounds_of_leaf(const SolidLeaf& leaf, int segments) {
     Box box;
     for (const SolidLeaf::Skin& skin : leaf.skins)
         if (const auto* shape = std::get_if<Shape>(&skin.object->shape); shape && shape->box)
             box.add(moved(*shape->box, leaf.placed));
         else if (shape)
-            return cut_leaf(leaf, Fineness(pieces), {}).box;
+            return cut_leaf(leaf, Fineness(segments), {}).box;
         else
             return kEverywhere;
     return box;
@@ -271,7 +268,7 @@ Box found_bounds(const Solid& solid, const Box& box, Box reach) {
     const Box largest = box.intersection(reach);
     if (largest.empty())
         return largest;
-    const Box found = evaluate_within(solid, Fineness({has_field(solid) ? 48 : 8}), largest).box;
+    const Box found = evaluate_within(solid, Fineness(has_field(solid) ? 48 : 8), largest).box;
     const dvec3 quarter = 0.25 * reach.extent();
     const Box middle{reach.center() - quarter, reach.center() + quarter};
     if (found.empty() || !middle.contains(found.lo) || !middle.contains(found.hi))
@@ -335,11 +332,11 @@ csg::Kind kind_of(const Object& object, bool inverse) {
     return csg::Kind::Intersection;
 }
 
-std::vector<SolidPart> evaluate(const Solid& solid, const CirclePieces& pieces, const Box& reach) {
-    Box box = bounds_of(solid, pieces);
+std::vector<SolidPart> evaluate(const Solid& solid, int segments, const Box& reach) {
+    Box box = bounds_of(solid, segments);
     if (box.empty())
         return {};
-    Fineness fineness(pieces);
+    Fineness fineness(segments);
     if (!is_finite_box(box)) {
         box = found_bounds(solid, box, reach);
         fineness.cells *= 3; // endless surfaces often have thin arms
@@ -386,7 +383,7 @@ std::vector<std::vector<uint32_t>> alike(const std::vector<Solid>& solids) {
     for (uint32_t i = 0; i < solids.size(); ++i)
         groups[key_of(solids[i])].push_back(i);
     for (auto& [key, group] : groups)
-        if (group.size() == 1 || is_finite_box(bounds_of(solids[group[0]], {8})))
+        if (group.size() == 1 || is_finite_box(bounds_of(solids[group[0]], 8)))
             all.push_back(std::move(group));
         else
             for (const uint32_t i : group)
@@ -395,7 +392,7 @@ std::vector<std::vector<uint32_t>> alike(const std::vector<Solid>& solids) {
     return all;
 }
 
-Box bounds_of(const Solid& solid, const CirclePieces& pieces) {
+Box bounds_of(const Solid& solid, int segments) {
     assert(!solid.nodes.empty());
     std::vector<Box> boxes;
     bool is_open = false; // an endless shape may be smaller within a box around the whole
@@ -403,7 +400,7 @@ Box bounds_of(const Solid& solid, const CirclePieces& pieces) {
         if (const auto* plane = shape_of<PlaneShape>(leaf))
             boxes.push_back(bounds_of_plane(*plane, leaf));
         else
-            boxes.push_back(leaf.inverse ? kEverywhere : bounds_of_leaf(leaf, pieces));
+            boxes.push_back(leaf.inverse ? kEverywhere : bounds_of_leaf(leaf, segments));
         is_open = is_open || (shape_of<EndlessShape>(leaf) && !leaf.inverse);
     }
     const uint32_t root = uint32_t(solid.nodes.size() - 1);

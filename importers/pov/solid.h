@@ -48,7 +48,7 @@ struct SolidPart {
 
 /// Returns the surface of a solid, one part for each skin that is seen. `reach`, in the solid's
 /// space, cuts off what is endless.
-std::vector<SolidPart> evaluate(const Solid& solid, const CirclePieces& pieces, const Box& reach);
+std::vector<SolidPart> evaluate(const Solid& solid, int segments, const Box& reach);
 
 /// Returns the cover of a skin, whose number counts through all leaves.
 Cover cover_of(const Solid& solid, uint32_t skin);
@@ -60,7 +60,7 @@ std::vector<std::vector<uint32_t>> alike(const std::vector<Solid>& solids);
 
 /// Returns a box around the solid, in its space. As in POV-Ray it follows from the boxes of the
 /// solid's parts, and is infinite on the sides where the solid may be endless.
-Box bounds_of(const Solid& solid, const CirclePieces& pieces);
+Box bounds_of(const Solid& solid, int segments);
 
 /// Returns an estimate of how many triangles the operands are cut into. Planes do not count.
 double triangles_of(const Solid& solid, int segments);
