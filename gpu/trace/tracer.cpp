@@ -60,11 +60,11 @@ Result<MemoryPlan> plan_memory(uint64_t budget_bytes, const DeviceInfo& device,
             format_text("a GPU budget of {} bytes is too small: the smallest that works "
                         "is {} bytes ({} for rays and answers, {} for a page)",
                         budget_bytes, smallest, plan.ray_bytes(), kSmallestPool));
+    // A pass's rays are read as one buffer texture.
+    const uint64_t shown_blocks = device.max_buffer_texels / (OVC_RAY_TEXELS * kBlockRays);
     // An eighth for rays: batches of ten thousand and more already run at full speed, and pages
     // want the rest. The share is cut off whether whole blocks fill it or not, so that a larger
     // budget never has a smaller pool.
-    // A pass's rays are one buffer texture.
-    const uint64_t shown_blocks = device.max_buffer_texels / (OVC_RAY_TEXELS * kBlockRays);
     MemoryPlan most = plan;
     most.batch_rays *= uint32_t(std::min<uint64_t>(
         {device.is_software ? kMaxBlocksInSoftware : kMaxBlocks / plan.passes,
