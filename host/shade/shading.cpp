@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <utility>
 
 namespace ovc {
 
@@ -24,20 +25,27 @@ Shading::Shading(const Integrator& integrator, size_t lights, Film& film)
                               std::min(kMaxAnswers, kBlocksAThread * kBlock * thread_count()))),
       film_(film) {}
 
-/// Appends the lists in their order.
+/// Makes room behind `to` for the rays of the blocks, and returns where those of each begin.
 template <class Purpose>
-static void append(std::span<const Spawned> blocks, RayList<Purpose> Spawned::*list,
-                   RayList<Purpose>& to) {
+static std::vector<size_t> make_room(std::span<const Spawned> blocks,
+                                     RayList<Purpose> Spawned::*list, RayList<Purpose>& to) {
     std::vector<size_t> places(blocks.size());
     size_t size = to.size();
-    for (size_t b = 0; b < blocks.size(); ++b) {
-        places[b] = size;
-        size += (blocks[b].*list).size();
-    }
+    for (size_t b = 0; b < blocks.size(); ++b)
+        places[b] = std::exchange(size, size + (blocks[b].*list).size());
     to.resize(size);
+    return places;
+}
+
+/// Appends the rays of the blocks in their order.
+static void append(std::span<const Spawned> blocks, Spawned& to) {
+    const std::vector<size_t> paths = make_room(blocks, &Spawned::paths, to.paths);
+    const std::vector<size_t> shadows = make_room(blocks, &Spawned::shadows, to.shadows);
     parallel_for(blocks.size(), kShadingGrain / kBlock, [&](size_t first, size_t last) {
-        for (size_t b = first; b < last; ++b)
-            to.put(places[b], blocks[b].*list);
+        for (size_t b = first; b < last; ++b) {
+            to.paths.put(paths[b], blocks[b].paths);
+            to.shadows.put(shadows[b], blocks[b].shadows);
+        }
     });
 }
 
@@ -51,9 +59,7 @@ void Shading::shade(const RayList<Path>& paths, std::span<const Hit> hits, size_
             shade_block(paths, hits, first + b * kBlock, std::min(kBlock, count - b * kBlock),
                         blocks_[b]);
     });
-    const std::span<const Spawned> blocks = std::span(blocks_).first(block_count);
-    append(blocks, &Spawned::paths, spawned.paths);
-    append(blocks, &Spawned::shadows, spawned.shadows);
+    append(std::span(blocks_).first(block_count), spawned);
 }
 
 void Shading::shade_block(const RayList<Path>& paths, std::span<const Hit> hits, size_t first,
