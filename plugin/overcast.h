@@ -190,7 +190,7 @@ typedef int (*ovc_progress_function)(void* user, double done, const char* stage)
 typedef struct ovc_scene_config {
     size_t struct_size;
     uint64_t gpu_memory_bytes; /* the budget: pages, rays and hits together stay below it. 0: the device's default. Max: what the device's scenes share */
-    uint64_t leaf_triangles;   /* max triangles of a level-1 leaf. 0: a tenth of the scene or less; one leaf where that fits and rays gain by it */
+    uint64_t leaf_triangles;   /* max triangles of a level-1 leaf. 0: a tenth of the scene, or as suits budget and build; one leaf where that fits and rays gain by it */
     uint32_t leaves;           /* instead of leaf_triangles: about this many leaves. 0: as leaf_triangles says */
     uint32_t precision;        /* ovc_precision */
     uint32_t kernel;           /* ovc_kernel */

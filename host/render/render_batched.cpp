@@ -21,7 +21,7 @@ namespace {
 /// picture has a minimum of batches, as long as these are no trifles: or a lane would have nothing
 /// to do while the other traces, and small pictures would pay most for memory that is new.
 constexpr uint64_t kRaysACore = 1 << 14;
-constexpr uint64_t kMinBatches = 32, kMinRays = 1024;
+constexpr uint64_t kMinBatches = 24, kMinRays = 1024;
 
 /// The state that both lanes share: the camera's rays, and the backend, which answers one call at a
 /// time.

@@ -19,7 +19,9 @@ namespace {
 constexpr uint64_t kPagesAtOnce = 3;
 constexpr uint64_t kPagesByDefault = 32;
 constexpr uint64_t kWorthMoving = 512 << 10; // bytes
-constexpr uint64_t kDefaultLeaves = 10;      // thesis, section 4
+// Fewer triangles are no leaf of their own where all fit: to cut them would take longer than rays
+// can gain.
+constexpr uint64_t kWorthCutting = 16384;
 // Pages are so small where the pool is several buffers, so that little room is left at their ends.
 constexpr uint64_t kPagesABuffer = 8;
 
@@ -121,6 +123,8 @@ LeafLimits limits_of(const TwoLevelOptions& options, const MemoryPlan& plan, uin
         limits.whole_bytes = unique <= room / kMaxBytesPerTriangle ? LeafLimits::kAny
                              : unique == triangles                 ? room
                                                                    : 0;
+        if (limits.whole_bytes == LeafLimits::kAny)
+            limits.triangles = std::max(limits.triangles, kWorthCutting);
     }
     return limits;
 }

@@ -23,9 +23,12 @@ enum class VariantChoice {
     Given,
 };
 
+/// About so many leaves a scene has where nobody says how many (thesis, section 4).
+inline constexpr uint64_t kDefaultLeaves = 10;
+
 struct TwoLevelOptions {
     uint64_t budget_bytes = 0;   // 0: the device's default
-    uint64_t leaf_triangles = 0; // 0: a tenth of the scene, or all where that is better
+    uint64_t leaf_triangles = 0; // 0: a tenth of the scene, or more where that is better
     uint64_t leaves = 0;         // instead of leaf_triangles: about so many; or 0
     bool certify = true;         // false: fast precision, the kernel's own answers
     bool compute = false;        // true: the compute kernel, else the fragment kernel
