@@ -225,6 +225,14 @@ struct LightBeam {
 
 /// A light that emits evenly. Its light arrives as color / pi x the cosine, without fall-off, as
 /// that of POV-Ray's light_source does by default.
+/// A picture that a light throws: its color is multiplied by the picture's.
+struct ThrownPicture {
+    PlacedTexture texture; // its point is that of a way from the light, of unit length
+    /// The light shines through a window of the picture's shape at z = 1, whose shorter side goes
+    /// from -1 to 1. The point is where the way goes through, with both sides from 0 to 1.
+    bool has_window = false;
+};
+
 struct Light {
     dvec3 position{0};
     vec3 color{1};
@@ -260,6 +268,7 @@ struct Light {
     /// An object that is not seen, as POV-Ray's projected_through: only light whose way goes
     /// through its surface arrives, and only what lies between there and the place casts shadows.
     std::optional<Region> projector;
+    std::optional<ThrownPicture> thrown;
 };
 
 /// The image is a window at the end of `direction` from the eye, `right` wide and `up` high

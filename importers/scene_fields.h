@@ -133,10 +133,14 @@ void each_field(auto& io, Some<LightBeam> auto& b) {
     io(b.radius, b.falloff, b.tightness);
 }
 
+void each_field(auto& io, Some<ThrownPicture> auto& t) {
+    io(t.texture, t.has_window);
+}
+
 void each_field(auto& io, Some<Light> auto& l) {
     io(l.position, l.color, l.shadow_offset, l.faces_places, l.area_points, l.clearance, l.group,
        l.on_camera, l.direction, l.cone, l.beam, l.parallel, l.shadowless, l.lights_media,
-       l.fades_in_air, l.fade_distance, l.fade_power, l.stand_in, l.projector);
+       l.fades_in_air, l.fade_distance, l.fade_power, l.stand_in, l.projector, l.thrown);
 }
 
 void each_field(auto& io, Some<ImageWindow> auto& w) {

@@ -209,6 +209,10 @@ inline bool has_sound_textures(const Scene& scene) {
            std::ranges::all_of(
                scene.background.layers,
                [&](const PlacedTexture& layer) { return is_color(layer.texture); }) &&
+           std::ranges::all_of(scene.lights,
+                               [&](const Light& light) {
+                                   return !light.thrown || is_color(light.thrown->texture.texture);
+                               }) &&
            has_sound_densities(scene.background.media, is_color);
 }
 

@@ -123,6 +123,9 @@ private:
         }
         for (PlacedTexture& layer : scene.background.layers)
             layer.texture += textures;
+        for (Light& light : scene.lights)
+            if (light.thrown)
+                light.thrown->texture.texture += textures;
         move_media(scene.background.media, textures);
     }
 

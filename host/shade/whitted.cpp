@@ -3,6 +3,7 @@
 #include "host/shade/whitted.h"
 
 #include "host/shade/lights/bounced_light.h"
+#include "host/shade/lights/thrown_light.h"
 #include "host/shade/surface/fog.h"
 
 #include <fmt/format.h>
@@ -300,7 +301,8 @@ void Whitted::scatter(const ScatteringPlace& from, const dvec3& way, const Path&
         const Light& light = scene_.lights[number];
         if (!light.lights_media || (number + turn) % light.area_points != 0)
             continue;
-        const FromLight arriving = light_at(light, from.at);
+        FromLight arriving = light_at(light, from.at);
+        arriving.color *= thrown_color(scene_, light, from.at);
         const double phase =
             light.area_points * phase_of(*from.medium, glm::dot(way, arriving.towards));
         const Ray ray = shadow_ray(light, from.at);
@@ -387,7 +389,8 @@ void Whitted::follow(const Ray& ray, const Path& path, const Hit& hit, Met& met,
 
 void Whitted::light_up(const Light& light, uint32_t number, const Met& met, Film& film,
                        Spawned& spawned) const {
-    vec3 arriving = float(light_stride_) * met.weight * direct_light(light, met.surface);
+    vec3 arriving = float(light_stride_) * met.weight * direct_light(light, met.surface) *
+                    thrown_color(scene_, light, met.surface.position);
     if (arriving == vec3(0))
         return;
     const bool from_behind =

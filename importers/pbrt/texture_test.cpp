@@ -284,5 +284,52 @@ TEST(PbrtTexture, AnEnvironmentMapIsALayerOfTheSky) {
     EXPECT_NEAR(down.y, v4.scene.exposure * 1, 1e-5);
 }
 
+TEST(PbrtTexture, AGoniometricLightThrowsItsPictureAllWays) {
+    const TexturedScene read = read_textured(
+        "AttributeBegin Translate 1 2 3 Rotate 90 0 1 0 Scale 2 2 2 LightSource \"goniometric\" "
+        "\"string mapname\" \"g.png\" \"rgb I\" [2 2 4] AttributeEnd" +
+        std::string(kTexturedTriangle));
+    EXPECT_TRUE(read.warnings.empty());
+    ASSERT_EQ(read.scene.pictures.size(), 1u);
+    EXPECT_EQ(read.scene.pictures[0].file, "g.png");
+    const Light& light = read.scene.lights.at(0);
+    EXPECT_EQ(light.position, dvec3(1, 2, 3));
+    ASSERT_TRUE(light.thrown);
+    EXPECT_FALSE(light.thrown->has_window);
+    const PlacedTexture& placed = light.thrown->texture;
+    const auto seen = [&](const dvec3& way) {
+        const dvec3 at = glm::normalize(placed.at(way));
+        return color_at(read.scene.textures, placed.texture, at).rgb;
+    };
+    // The picture's axis is y, and its s = 0 at the light's x, which is turned to -z of the world.
+    EXPECT_NEAR(seen({0, 1, 0}).y, 1, 1e-6);
+    EXPECT_NEAR(seen({0, -1, 0}).y, 0, 1e-6);
+    expect_near(seen({0, 0, 1}), {0.5f, 0.5f, 0.5f});
+    expect_near(seen({1, 0, 0}), {0.25f, 0.5f, 0.5f});
+}
+
+TEST(PbrtTexture, AProjectionLightThrowsItsPictureThroughAWindow) {
+    const TexturedScene read =
+        read_textured("LightSource \"projection\" \"string mapname\" \"p.png\" \"float fov\" 90" +
+                      std::string(kTexturedTriangle));
+    EXPECT_TRUE(read.warnings.empty());
+    const Light& light = read.scene.lights.at(0);
+    EXPECT_FALSE(light.cone);
+    ASSERT_TRUE(light.thrown);
+    EXPECT_TRUE(light.thrown->has_window);
+    const dvec3 rim = light.thrown->texture.at(dvec3(3, -3, 3));
+    EXPECT_NEAR(rim.x / rim.z, 1, 1e-12);
+    EXPECT_NEAR(rim.y / rim.z, -1, 1e-12);
+    // The first row lies below.
+    const auto seen = color_at(read.scene.textures, light.thrown->texture.texture,
+                               TexturePoint(dvec3(0.25, 0.125, 0)));
+    expect_near(seen.rgb, {0.25f, 0.875f, 0.5f});
+    const TexturedScene bare =
+        read_textured("LightSource \"projection\"" + std::string(kTexturedTriangle));
+    ASSERT_EQ(bare.warnings.size(), 1u);
+    EXPECT_NE(bare.warnings[0].find("without a picture"), std::string::npos);
+    EXPECT_FALSE(bare.scene.lights.at(0).thrown);
+}
+
 } // namespace
 } // namespace ovc

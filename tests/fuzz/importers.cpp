@@ -172,6 +172,7 @@ Scene scene_with_everything() {
     light.cone = SpotCone{0.9, 0.8, 2};
     light.fade_power = 2;
     light.stand_in = true;
+    light.thrown = ThrownPicture{{}, true};
     scene.lights = {light, {}};
     scene.may_add_light = false;
     Camera camera;

@@ -2,6 +2,8 @@
 // Lights are chosen by their power, with a binary search in the running sums of their chances.
 #include "host/shade/lights/light_sampler.h"
 
+#include "host/shade/lights/thrown_light.h"
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -142,7 +144,8 @@ std::optional<Arriving> LightSampler::from_light(uint32_t number,
                                                  const SurfacePoint& surface) const {
     if (!surface.lit_by.includes(scene_.lights[number].group))
         return std::nullopt;
-    const FromLight from = light_at(scene_.lights[number], surface.position);
+    FromLight from = light_at(scene_.lights[number], surface.position);
+    from.color *= thrown_color(scene_, scene_.lights[number], surface.position);
     if (from.towards == dvec3(0) || from.color == vec3(0))
         return std::nullopt;
     return Arriving{shadow_ray(scene_.lights[number], surface.position), from.towards,

@@ -54,15 +54,10 @@ void Lights::add(const std::string& type, const Parameters& parameters, const dm
         return add_distant(parameters, to_world);
     if (type == "infinite" || type == "exinfinite")
         return add_infinite(parameters, to_world, place);
-    if (type == "goniometric") {
-        diagnostics_.approximate("goniometric", place, "goniometric lights shine evenly all ways");
-        return add_point(parameters, to_world);
-    }
-    if (type == "projection") {
-        diagnostics_.approximate("projection", place,
-                                 "what projection lights project is left out: they are spots");
-        return add_spot(parameters, to_world);
-    }
+    if (type == "goniometric")
+        return add_goniometric(parameters, to_world, place);
+    if (type == "projection")
+        return add_projection(parameters, to_world, place);
     diagnostics_.missing("light " + type, place,
                          fmt::format("lights {} left out", ovc::quoted(type)));
 }
@@ -75,6 +70,71 @@ void Lights::add_point(const Parameters& p, const dmat4& to_world) {
         intensity *= *power / mean(intensity);
     set_falloff(light, intensity);
     lights_.push_back(light);
+}
+
+/// Returns the name of the parameter with a light's picture: "filename" in v4, "mapname" before;
+/// null where it has none.
+static const char* picture_of(const Parameters& p) {
+    return p.find("filename") ? "filename" : p.find("mapname") ? "mapname" : nullptr;
+}
+
+/// Returns how the picture lies around a sky or a lamp: v3's "mapname" goes around by longitudes
+/// and latitudes, v4's "filename" is octahedral, its first row at t = 0.
+static ImageTexture around(bool is_octahedral) {
+    ImageTexture map;
+    map.projection =
+        is_octahedral ? ImageTexture::Projection::Octahedral : ImageTexture::Projection::LatLong;
+    if (is_octahedral)
+        map.to_picture = {dvec3(1, 0, 0), dvec3(0, -1, 1)};
+    map.beyond_s = is_octahedral ? Beyond::Clamp : Beyond::Repeat;
+    map.beyond_t = Beyond::Clamp;
+    map.filter = TexelFilter::Smooth;
+    return map;
+}
+
+ThrownPicture Lights::thrown(const Parameters& p, const dmat3& to_light,
+                             const ImageTexture& picture, const Place& place) {
+    if (p.find("power"))
+        diagnostics_.approximate("power of a picture", place,
+                                 "lights with pictures have the power of a white picture's");
+    ThrownPicture thrown;
+    thrown.texture.texture =
+        textures_.image(p.text(picture_of(p)), place, picture, /* on_uv= */ false);
+    for (int row = 0; row < 3; ++row)
+        thrown.texture.to_texture[size_t(row)] =
+            dvec4(to_light[0][row], to_light[1][row], to_light[2][row], 0);
+    return thrown;
+}
+
+/// The picture's axis is that of y, so that y and z change places.
+void Lights::add_goniometric(const Parameters& p, const dmat4& to_world, const Place& place) {
+    add_point(p, to_world);
+    if (!picture_of(p))
+        return;
+    ImageTexture picture = around(p.find("filename") != nullptr);
+    picture.otherwise = {vec3(1)};
+    const dmat3 upright(dvec3(1, 0, 0), dvec3(0, 0, 1), dvec3(0, 1, 0));
+    lights_.back().thrown = thrown(p, upright * glm::inverse(dmat3(to_world)), picture, place);
+}
+
+/// "fov" is the angle of the shorter side of a window, on whose lower edge the first row lies.
+void Lights::add_projection(const Parameters& p, const dmat4& to_world, const Place& place) {
+    add_point(p, to_world);
+    if (!picture_of(p)) {
+        diagnostics_.approximate("projection", place,
+                                 "projection lights without a picture shine evenly all ways");
+        return;
+    }
+    ImageTexture picture;
+    picture.to_picture = {dvec3(1, 0, 0), dvec3(0, -1, 1)};
+    picture.beyond_s = picture.beyond_t = Beyond::Clamp;
+    picture.filter = TexelFilter::Smooth;
+    picture.otherwise = {vec3(1)};
+    const double angle = std::clamp(p.number("fov", 45), 1e-3, 179.9);
+    const double by_side = 1 / std::tan(angle * (pi / 360));
+    const dmat3 to_window(dvec3(by_side, 0, 0), dvec3(0, by_side, 0), dvec3(0, 0, 1));
+    lights_.back().thrown = thrown(p, to_window * glm::inverse(dmat3(to_world)), picture, place);
+    lights_.back().thrown->has_window = true;
 }
 
 void Lights::add_spot(const Parameters& p, const dmat4& to_world) {
@@ -124,19 +184,10 @@ void Lights::add_infinite(const Parameters& p, const dmat4& to_world, const Plac
         add_map(p, radiance, to_world, place);
 }
 
-/// v3's "mapname" is a map of longitudes and latitudes, v4's "filename" an octahedral one, whose
-/// first row is at t = 0.
 void Lights::add_map(const Parameters& p, const vec3& radiance, const dmat4& to_world,
                      const Place& place) {
     const bool is_octahedral = !p.find("mapname");
-    ImageTexture map;
-    map.projection =
-        is_octahedral ? ImageTexture::Projection::Octahedral : ImageTexture::Projection::LatLong;
-    if (is_octahedral)
-        map.to_picture = {dvec3(1, 0, 0), dvec3(0, -1, 1)};
-    map.beyond_s = is_octahedral ? Beyond::Clamp : Beyond::Repeat;
-    map.beyond_t = Beyond::Clamp;
-    map.filter = TexelFilter::Smooth;
+    ImageTexture map = around(is_octahedral);
     map.scale = radiance;
     map.otherwise = {vec3(0), 0, 1}; // the sky behind it is seen
     const uint32_t texture = textures_.image(p.text(is_octahedral ? "filename" : "mapname"), place,

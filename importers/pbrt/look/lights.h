@@ -31,11 +31,15 @@ public:
 private:
     vec3 scaled(const Parameters& parameters, std::string_view color, const vec3& otherwise) const;
     void add_point(const Parameters& parameters, const dmat4& to_world);
+    void add_goniometric(const Parameters& parameters, const dmat4& to_world, const Place& place);
+    void add_projection(const Parameters& parameters, const dmat4& to_world, const Place& place);
     void add_spot(const Parameters& parameters, const dmat4& to_world);
     void add_distant(const Parameters& parameters, const dmat4& to_world);
     void add_infinite(const Parameters& parameters, const dmat4& to_world, const Place& place);
     void add_map(const Parameters& parameters, const vec3& radiance, const dmat4& to_world,
                  const Place& place);
+    ThrownPicture thrown(const Parameters& parameters, const dmat3& to_light,
+                         const ImageTexture& picture, const Place& place);
 
     Textures& textures_;
     Diagnostics& diagnostics_;
