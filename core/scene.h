@@ -223,16 +223,25 @@ struct LightBeam {
     double tightness = 0;
 };
 
-/// A light that emits evenly. Its light arrives as color / pi x the cosine, without fall-off, as
-/// that of POV-Ray's light_source does by default.
 /// A picture that a light throws: its color is multiplied by the picture's.
 struct ThrownPicture {
-    PlacedTexture texture; // its point is that of a way from the light, of unit length
-    /// The light shines through a window of the picture's shape at z = 1, whose shorter side goes
-    /// from -1 to 1. The point is where the way goes through, with both sides from 0 to 1.
+    PlacedTexture texture; // leads from a way from the light, of unit length, to its space
+    /// The light shines through a window at z = 1 of that space, which has the picture's shape and
+    /// whose shorter side goes from -1 to 1. The picture fills it, from 0 to 1 along both sides.
     bool has_window = false;
+
+    /// Returns where the window, of this width by its height, lets a way of the texture's space
+    /// through, in the picture's x and y; nothing where it does not.
+    static std::optional<dvec2> through_window(const dvec3& way, double shape) {
+        constexpr double kMinAhead = 1e-3; // flatter ways go through none, as in pbrt
+        const dvec2 at = dvec2(way) / way.z / glm::max(dvec2(shape, 1 / shape), 1.0);
+        const bool goes = way.z >= kMinAhead && std::abs(at.x) <= 1 && std::abs(at.y) <= 1;
+        return goes ? std::optional(0.5 * (at + 1.0)) : std::nullopt;
+    }
 };
 
+/// A light that emits evenly. Its light arrives as color / pi x the cosine, without fall-off, as
+/// that of POV-Ray's light_source does by default.
 struct Light {
     dvec3 position{0};
     vec3 color{1};

@@ -75,7 +75,8 @@ vec3 ambient_light(const Background& background, const vec3& up, const SurfacePo
 /// Returns the vector from the position to the light, at its full length.
 dvec3 towards_light(const Light& light, const dvec3& position);
 
-/// The light that a lamp brings to a place if nothing is in between.
+/// The light that a lamp brings to a place if nothing is in between, without the picture that it
+/// throws (lights/thrown_light.h).
 struct FromLight {
     dvec3 towards{0}; // the lamp, unit length; 0: it is at this very place
     vec3 color{0};    // after its cone and its fall-off with distance

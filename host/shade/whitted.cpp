@@ -389,8 +389,9 @@ void Whitted::follow(const Ray& ray, const Path& path, const Hit& hit, Met& met,
 
 void Whitted::light_up(const Light& light, uint32_t number, const Met& met, Film& film,
                        Spawned& spawned) const {
-    vec3 arriving = float(light_stride_) * met.weight * direct_light(light, met.surface) *
-                    thrown_color(scene_, light, met.surface.position);
+    vec3 arriving = float(light_stride_) * met.weight * direct_light(light, met.surface);
+    if (arriving != vec3(0))
+        arriving *= thrown_color(scene_, light, met.surface.position);
     if (arriving == vec3(0))
         return;
     const bool from_behind =

@@ -19,9 +19,9 @@ namespace {
 constexpr uint64_t kPagesAtOnce = 3;
 constexpr uint64_t kPagesByDefault = 32;
 constexpr uint64_t kWorthMoving = 512 << 10; // bytes
-// Fewer triangles are no leaf of their own where all fit: to cut them would take longer than rays
-// can gain.
-constexpr uint64_t kWorthCutting = 16384;
+// Where all pages fit, so many triangles may stay in a leaf whatever their share of the scene: to
+// cut them takes longer than rays can gain.
+constexpr uint64_t kTooFewToCut = 16384;
 // Pages are so small where the pool is several buffers, so that little room is left at their ends.
 constexpr uint64_t kPagesABuffer = 8;
 
@@ -124,7 +124,7 @@ LeafLimits limits_of(const TwoLevelOptions& options, const MemoryPlan& plan, uin
                              : unique == triangles                 ? room
                                                                    : 0;
         if (limits.whole_bytes == LeafLimits::kAny)
-            limits.triangles = std::max(limits.triangles, kWorthCutting);
+            limits.triangles = std::max(limits.triangles, kTooFewToCut);
     }
     return limits;
 }

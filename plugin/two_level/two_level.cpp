@@ -35,7 +35,7 @@ Result<std::unique_ptr<TwoLevel>> TwoLevel::build(const Soup& soup, GlThread& gl
         return use.error();
     say(log, LogLevel::Warning, "cutting the scene into leaves, of which the GPU holds some");
     TwoLevelOptions cut = options;
-    cut.leaves = kDefaultLeaves;
+    cut.leaf_triangles = std::max<uint64_t>(soup.triangle_count() / kDefaultLeaves, 1);
     self.reset();
     return build(soup, gl, cut, log, progress);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Point, spot and distant lights keep their kind; the sky becomes a background and some light from
-// above.
+// Point, spot and distant lights keep their kind, and pictures are thrown; the sky becomes a
+// background and some light from above.
 #include "importers/pbrt/look/lights.h"
 
 #include "importers/file/text.h"
@@ -119,12 +119,12 @@ void Lights::add_goniometric(const Parameters& p, const dmat4& to_world, const P
 
 /// "fov" is the angle of the shorter side of a window, on whose lower edge the first row lies.
 void Lights::add_projection(const Parameters& p, const dmat4& to_world, const Place& place) {
-    add_point(p, to_world);
     if (!picture_of(p)) {
         diagnostics_.approximate("projection", place,
-                                 "projection lights without a picture shine evenly all ways");
-        return;
+                                 "projection lights without a picture are spots");
+        return add_spot(p, to_world);
     }
+    add_point(p, to_world);
     ImageTexture picture;
     picture.to_picture = {dvec3(1, 0, 0), dvec3(0, -1, 1)};
     picture.beyond_s = picture.beyond_t = Beyond::Clamp;
