@@ -22,12 +22,12 @@ vec3 thrown_color(const Scene& scene, const Light& light, const dvec3& position)
     if (!(distance > 0))
         return vec3(0);
     const auto& [placed, has_window] = *light.thrown;
-    const dvec3 way = placed.at(from / distance);
+    const dvec3 way = glm::normalize(placed.at(from / distance)); // the light may be scaled
     const auto color_of = [&](const dvec3& at) {
         return color_at(scene.textures, placed.texture, TexturePoint(at)).rgb;
     };
     if (!has_window)
-        return color_of(glm::normalize(way));
+        return color_of(way);
     const auto at = ThrownPicture::through_window(way, shape_of(scene, placed.texture));
     return at ? color_of(dvec3(*at, 0)) : vec3(0);
 }

@@ -63,6 +63,16 @@ TEST(ThrownLight, AWindowWithoutAPictureIsSquareAndWhite) {
     slide.expect({1.5, 0, 1}, vec3(0));
 }
 
+TEST(ThrownLight, ALightMayBeScaled) {
+    for (const double scale : {1e-6, 1e6}) {
+        Slide slide(ImageTexture::Projection::Planar, true);
+        for (dvec4& row : slide.light.thrown->texture.to_texture)
+            row *= scale;
+        slide.expect({1.5, 0, 1}, {0.875f, 0.5f, 0.5f});
+        slide.expect({0, 0, -2}, vec3(0));
+    }
+}
+
 TEST(ThrownLight, OtherLightsKeepTheirColor) {
     Slide slide(ImageTexture::Projection::Planar, true);
     slide.light.thrown.reset();

@@ -59,9 +59,9 @@ vec3 arriving(const Light& light, const dvec3& at, const dvec3& normal) {
             return vec3(0);
         share *= std::pow(cosine, light.cone->tightness);
     }
-    if (light.thrown &&
-        light.thrown->has_window && // as if the picture, which is not open, were square
-        !ThrownPicture::through_window(light.thrown->texture.at(-towards), 1))
+    // The window is taken as square, because the picture is not open.
+    if (light.thrown && light.thrown->has_window &&
+        !ThrownPicture::through_window(glm::normalize(light.thrown->texture.at(-towards)), 1))
         return vec3(0);
     if (light.fade_distance > 0)
         share *= 2 / (1 + std::pow(distance / light.fade_distance, light.fade_power));
