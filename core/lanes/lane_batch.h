@@ -30,7 +30,7 @@ public:
     void add(const RaySpan& rays, size_t i, const Soup& soup, TriangleId id, const Entry& entry) {
         assert(!full() && soup.has(id));
         const size_t lane = size_t(count_++);
-        lanes_.set(int(lane), rays.address(i, room_[lane]), soup.chunks[id.mesh], id.prim);
+        lanes_.set(int(lane), rays.address(i, room_.rays[lane]), soup.chunks[id.mesh], id.prim);
         entries_[lane] = entry;
     }
 
@@ -47,9 +47,18 @@ public:
     }
 
 private:
-    Lanes lanes_{};
-    std::array<Entry, Lanes::kCount> entries_{};
-    std::array<Ray, Lanes::kCount> room_; // for rays that are floats
+    /// For rays that are floats.
+    struct Room {
+        Room() {}
+        union {
+            std::array<Ray, Lanes::kCount> rays;
+        };
+    };
+
+    // What is not in use is not written: most batches live for a few pairs.
+    Lanes lanes_;
+    std::array<Entry, Lanes::kCount> entries_;
+    Room room_;
     int count_ = 0;
 };
 
