@@ -129,8 +129,7 @@ CameraRays::Place CameraRays::sampled(uint32_t pixel, uint32_t sample) const {
             is_blurred ? in_disk(random.pair(kOnLens)) : dvec2(0)};
 }
 
-CameraRays::Place CameraRays::place(uint64_t i) const {
-    const uint32_t pixel = order_[i / samples_], sample = uint32_t(i % samples_);
+CameraRays::Place CameraRays::place(uint32_t pixel, uint32_t sample) const {
     if (points_.empty())
         return sampled(pixel, sampling_.first_sample + sample);
     const dvec2& at = points_[size_t(pixel) * samples_ + sample];
@@ -143,8 +142,14 @@ void CameraRays::make(uint64_t first, size_t count, RayList<Path>& paths) const 
     const size_t before = paths.size();
     paths.resize(before + count);
     parallel_for(count, kCameraGrain, [&](size_t from, size_t to) {
+        size_t number = size_t((first + from) / samples_); // of the pixel
+        auto sample = uint32_t((first + from) % samples_);
         for (size_t i = from; i < to; ++i) {
-            const Place at = place(first + i);
+            const Place at = place(order_[number], sample);
+            if (++sample == samples_) {
+                sample = 0;
+                ++number;
+            }
             // Made where it stays: a copy would wait for the stores before it.
             new (&paths.rays[before + i])
                 Ray(pinhole_.ray(at.x, at.y, at.within, at.lens, at.sample));

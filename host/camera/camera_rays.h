@@ -56,7 +56,7 @@ private:
         dvec2 within;           // the place within that pixel
         dvec2 lens;             // the place on the lens, in the unit disk
     };
-    Place place(uint64_t i) const;
+    Place place(uint32_t pixel, uint32_t sample) const;
     Place sampled(uint32_t pixel, uint32_t sample) const;
 
     const Pinhole& pinhole_;
