@@ -23,6 +23,10 @@ namespace {
 constexpr uint64_t kRaysACore = 1 << 14;
 constexpr uint64_t kMinBatches = 24, kMinRays = 1024;
 
+constexpr size_t kMaxLanes = 2;
+/// The share of the time for which a backend traces that is always busy, but for handing over.
+constexpr double kBusy = 0.75;
+
 /// The state that both lanes share: the camera's rays, and the backend, which answers one call at a
 /// time.
 class Work {
@@ -49,15 +53,25 @@ public:
         const std::lock_guard turn(turn_);
         if (stopped_)
             return false;
+        const LoopThreads::Scope scope(all_threads_);
         const Stopwatch watch;
         const Result<Done> done = ask(backend_);
         report_.seconds_trace += watch.seconds();
+        backend_is_busy_ = report_.seconds_trace > kBusy * since_begin_.seconds();
         if (!done)
             error_ = done.error();
         report_.rays += rays;
         report_.pixels_done = film_.pixels_done();
         stopped_ = !done || (observe_ && !observe_(report_));
         return !stopped_;
+    }
+
+    /// Returns the threads on which a lane makes and shades rays; own: the one that the lane has. A
+    /// lane that has a core keeps to that: the rays stay in the core's cache, and no threads look
+    /// for work between short loops. But a backend that is always busy soon waits for the lane,
+    /// which therefore gets all threads.
+    LoopThreads& threads(LoopThreads& own) {
+        return has_cores_ && !backend_is_busy_ ? own : all_threads_;
     }
 
     void shaded_for(double seconds) {
@@ -78,6 +92,10 @@ private:
     Backend& backend_;
     const RenderObserver& observe_;
     const Film& film_;
+    const bool has_cores_ = thread_count() <= kMaxLanes; // one for each lane
+    LoopThreads all_threads_{0};
+    const Stopwatch since_begin_;
+    std::atomic<bool> backend_is_busy_{false};
     std::atomic<uint64_t> begun_{0}; // camera rays
     std::mutex turn_;                // guards the backend and the members below
     bool stopped_ = false;
@@ -97,7 +115,7 @@ public:
 
     void run() {
         const Stopwatch watch;
-        while (work_.begin(batch_rays_, spawned_.paths))
+        while (begin())
             while (!spawned_.paths.empty()) {
                 take_waiting();
                 if (!trace_paths() || !shade())
@@ -108,6 +126,11 @@ public:
     }
 
 private:
+    bool begin() {
+        const LoopThreads::Scope scope(work_.threads(own_thread_));
+        return work_.begin(batch_rays_, spawned_.paths);
+    }
+
     bool trace_paths() {
         RayCounts rays;
         for (const Path& path : now_.purposes)
@@ -119,6 +142,7 @@ private:
     }
 
     bool shade() {
+        const LoopThreads::Scope scope(work_.threads(own_thread_));
         const size_t piece = shading_.max_answers();
         for (size_t first = 0; first < now_.size(); first += piece) {
             shading_.shade(now_, hits_, first, std::min(piece, now_.size() - first), spawned_);
@@ -202,6 +226,7 @@ private:
     const Integrator& integrator_;
     Shading shading_;
     const size_t batch_rays_;
+    LoopThreads own_thread_{1};
     double seconds_tracing_ = 0; // tracing, or waiting for the other lane's tracing
     // These buffers are kept between rounds so that they are allocated once.
     Spawned spawned_;         // rays that wait, the deepest last
@@ -222,7 +247,7 @@ Result<RenderReport> render_batched(const Integrator& integrator, size_t lights,
         std::clamp(camera.size() / kMinBatches + 1, kMinRays, kRaysACore * thread_count());
     const size_t batch = size_t(std::min<uint64_t>(batch_rays, wanted));
     Work work(camera, sight, backend, observe, film);
-    std::vector<std::future<void>> lanes(thread_count() == 1 ? 1 : 2);
+    std::vector<std::future<void>> lanes(std::min(kMaxLanes, thread_count()));
     for (std::future<void>& lane : lanes)
         lane = std::async(std::launch::async,
                           [&] { Lane(work, integrator, lights, batch, film).run(); });
