@@ -21,12 +21,23 @@ struct FarTriangle {
     double lo, hi;    // of the products of the corners with it
     /// The weight of corner b or c at a point of the plane is its product with this.
     double to_b[3], to_c[3];
-    double error; // of a weight
+    double b_size, c_size; // of these: the sums of their magnitudes
+    double error;          // of a weight
     uint32_t number;
+    bool shares_plane; // a, normal, lo and hi are those of the one before in a list
 };
 
 /// Returns nothing where the triangle is too thin for the bounds.
 std::optional<FarTriangle> far_triangle(const Triangle& triangle, uint32_t number);
+
+/// A triangle and its number.
+struct NumberedTriangle {
+    Triangle corners;
+    uint32_t number;
+};
+/// Returns those that are not too thin, in their order. Neighbours in one plane, as the two of a
+/// floor, share that where they have a corner in common.
+std::vector<FarTriangle> far_triangles(std::span<const NumberedTriangle> triangles);
 
 /// What eight rays meet of some far triangles. A bit for each lane; those of rays that are not
 /// valid do not matter.
@@ -39,8 +50,8 @@ struct FarMeeting {
     alignas(64) double last[RayLanes::kCount];
 };
 
-/// Takes rays to the triangles, between `from` and t_max. skip: the number of one that each ray
-/// does not see.
+/// Takes rays to the triangles, between `from` and t_max. The first shares no plane. skip: the
+/// number of one that each ray does not see.
 FarMeeting meet_far(std::span<const FarTriangle> triangles, const RayLanes& rays,
                     const uint32_t* skip);
 

@@ -9,63 +9,71 @@
 
 namespace ovc {
 
-/// Rays and a far triangle: any hit is at a t in [first, last].
+inline constexpr double kFarSlack = 0x1p-48; // more than all roundings of a product
+
+/// Rays and the plane of a far triangle: any hit is at a t in [first, last].
+template <class V>
+struct FarPlane {
+    V org[3]; // counted from the triangle's a
+    V reach;
+    V first, last;
+    MaskOf<V> possible;
+
+    OVC_INLINE FarPlane(const FarTriangle& f, const RaysOf<V>& rays) : reach{} {
+        V height{}, rate{};
+        for (int axis = 0; axis < 3; ++axis) {
+            org[axis] = rays.org[axis] - f.a[axis];
+            reach = larger(reach, magnitude(org[axis]));
+            height = height + f.normal[axis] * org[axis];
+            rate = rate + f.normal[axis] * rays.dir[axis];
+        }
+        const V inverse = 1 / rate;
+        const V below = ((f.lo - height) - kFarSlack * reach) * inverse;
+        const V above = ((f.hi - height) + kFarSlack * reach) * inverse;
+        const V share = 2 * (kFarSlack * rays.longest() * magnitude(inverse) + kFarSlack);
+        const V below_off = magnitude(below) * share, above_off = magnitude(above) * share;
+        // Not if the ray runs along the plane, and not with a NaN.
+        const MaskOf<V> tells = share <= all_lanes<V>(1e-3);
+        first = larger(smaller(below - below_off, above - above_off), rays.from);
+        last = smaller(larger(below + below_off, above + above_off), rays.t_max);
+        first = tells ? first : rays.from;
+        last = tells ? last : rays.t_max;
+        possible = ~(first > last);
+    }
+};
+
+/// Rays and a far triangle: any hit is where they meet its plane.
 template <class V>
 struct FarHit {
-    V first, last;
     MaskOf<V> possible, certain;
 };
 
 template <class V>
-OVC_INLINE FarHit<V> far_hit(const FarTriangle& f, const RaysOf<V>& rays) {
-    constexpr double kSlack = 0x1p-48; // more than all roundings of a product
-    const V longest = rays.longest();
-    V org[3], reach{}, height{}, rate{};
-    for (int axis = 0; axis < 3; ++axis) {
-        org[axis] = rays.org[axis] - f.a[axis];
-        reach = larger(reach, magnitude(org[axis]));
-        height = height + f.normal[axis] * org[axis];
-        rate = rate + f.normal[axis] * rays.dir[axis];
-    }
-    const V inverse = 1 / rate;
-    const V below = ((f.lo - height) - kSlack * reach) * inverse;
-    const V above = ((f.hi - height) + kSlack * reach) * inverse;
-    const V share = 2 * (kSlack * longest * magnitude(inverse) + kSlack);
-    const V below_off = magnitude(below) * share, above_off = magnitude(above) * share;
-    // Not if the ray runs along the plane, and not with a NaN.
-    const MaskOf<V> tells = share <= all_lanes<V>(1e-3);
-    FarHit<V> hit;
-    hit.first = larger(smaller(below - below_off, above - above_off), rays.from);
-    hit.last = smaller(larger(below + below_off, above + above_off), rays.t_max);
-    hit.first = tells ? hit.first : rays.from;
-    hit.last = tells ? hit.last : rays.t_max;
-    hit.possible = ~(hit.first > hit.last);
-    if (bits_of<V>(hit.possible) == 0) { // as of most rays from the plane itself
-        hit.certain = hit.possible;
+OVC_INLINE FarHit<V> far_hit(const FarTriangle& f, const RaysOf<V>& rays,
+                             const FarPlane<V>& plane) {
+    FarHit<V> hit{plane.possible, plane.possible};
+    if (bits_of<V>(hit.possible) == 0) // as of most rays from the plane itself
         return hit;
-    }
-    const V middle = 0.5 * (hit.first + hit.last);
-    const V error =
-        longest * (hit.last - hit.first) + kSlack * (reach + longest * magnitude(middle));
+    const V longest = rays.longest();
+    const V middle = 0.5 * (plane.first + plane.last);
+    const V error = longest * (plane.last - plane.first) +
+                    kFarSlack * (plane.reach + longest * magnitude(middle));
     V b{}, c{};
-    double b_size = 0, c_size = 0; // of the vectors, as sums of magnitudes
     for (int axis = 0; axis < 3; ++axis) {
-        const V at = org[axis] + rays.dir[axis] * middle;
+        const V at = plane.org[axis] + rays.dir[axis] * middle;
         b = b + f.to_b[axis] * at;
         c = c + f.to_c[axis] * at;
-        b_size += f.to_b[axis] < 0 ? -f.to_b[axis] : f.to_b[axis];
-        c_size += f.to_c[axis] < 0 ? -f.to_c[axis] : f.to_c[axis];
     }
     const V weights[3] = {1 - b - c, b, c};
-    const V errors[3] = {error * (b_size + c_size) + (kSlack + f.error), error * b_size + f.error,
-                         error * c_size + f.error};
+    const V errors[3] = {error * (f.b_size + f.c_size) + (kFarSlack + f.error),
+                         error * f.b_size + f.error, error * f.c_size + f.error};
     MaskOf<V> inside = ~MaskOf<V>{}, outside{};
     for (int corner = 0; corner < 3; ++corner) {
         inside &= weights[corner] > errors[corner];
         outside |= weights[corner] < -errors[corner];
     }
     hit.possible &= ~outside;
-    hit.certain = hit.possible & inside & (hit.first > rays.from) & (hit.last < rays.t_max);
+    hit.certain = hit.possible & inside & (plane.first > rays.from) & (plane.last < rays.t_max);
     return hit;
 }
 
@@ -77,17 +85,18 @@ struct FarNearest {
     V doubt = first;
     V number{};
 
-    OVC_INLINE void take(const FarHit<V>& hit, double number_of_it, MaskOf<V> seen) {
+    OVC_INLINE void take(const FarHit<V>& hit, const FarPlane<V>& at, double number_of_it,
+                         MaskOf<V> seen) {
         const MaskOf<V> certain = hit.certain & seen;
-        const MaskOf<V> nearer = certain & (hit.last < first);
+        const MaskOf<V> nearer = certain & (at.last < first);
         // Exact arithmetic tells which of two such hits is the nearer one.
-        const MaskOf<V> overlaps = certain & ~nearer & (hit.first <= last);
+        const MaskOf<V> overlaps = certain & ~nearer & (at.first <= last);
         const MaskOf<V> in_doubt = seen & hit.possible & ~certain;
-        doubt = in_doubt ? smaller(doubt, hit.first) : doubt;
-        doubt = overlaps ? smaller(doubt, smaller(first, hit.first)) : doubt;
-        last = overlaps ? smaller(last, hit.last) : last;
-        first = nearer ? hit.first : first;
-        last = nearer ? hit.last : last;
+        doubt = in_doubt ? smaller(doubt, at.first) : doubt;
+        doubt = overlaps ? smaller(doubt, smaller(first, at.first)) : doubt;
+        last = overlaps ? smaller(last, at.last) : last;
+        first = nearer ? at.first : first;
+        last = nearer ? at.last : last;
         number = nearer ? all_lanes<V>(number_of_it) : number;
     }
 };
@@ -103,8 +112,14 @@ OVC_INLINE FarMeeting meet_far_by(std::span<const FarTriangle> triangles, const 
         for (int i = 0; i < n; ++i)
             skipped[i] = skip[lane + i];
         FarNearest<V> nearest;
-        for (const FarTriangle& triangle : triangles)
-            nearest.take(far_hit(triangle, rays), triangle.number, skipped != triangle.number);
+        for (size_t i = 0; i < triangles.size();) {
+            const FarPlane<V> plane(triangles[i], rays);
+            do {
+                const FarTriangle& triangle = triangles[i];
+                nearest.take(far_hit(triangle, rays, plane), plane, triangle.number,
+                             skipped != triangle.number);
+            } while (++i < triangles.size() && triangles[i].shares_plane);
+        }
         constexpr double kNever = std::numeric_limits<double>::infinity();
         const MaskOf<V> hits = nearest.first < all_lanes<V>(kNever);
         const MaskOf<V> unclear =

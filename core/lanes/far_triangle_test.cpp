@@ -61,6 +61,40 @@ TEST(FarTriangle, IsNotTooThin) {
     EXPECT_FALSE(far_triangle({dvec3(0), dvec3(1e-200, 0, 0), dvec3(0, 1e-200, 0)}, 0));
 }
 
+TEST(FarTriangle, SharesThePlaneOfTheOneBefore) {
+    size_t shared = 0, cases = 0;
+    for (uint64_t seed = 0; seed < 1000; ++seed) {
+        test::Random random(seed);
+        const double size = std::pow(10.0, random(-6, 8));
+        const bool level = seed % 2; // exactly in a plane
+        const auto any = [&] {
+            const dvec3 p = point(random, size);
+            return level ? dvec3(p.x, 0, p.z) : p;
+        };
+        const dvec3 corner = any(), ab = any(), ac = any();
+        const std::array<NumberedTriangle, 3> quad{
+            {{{corner, corner + ab, corner + ac}, 0},
+             {{corner + ab, corner + ab + ac, corner + ac}, 1},
+             {{corner + dvec3(0, size, 0), corner + ab, corner + ac}, 2}}};
+        const std::vector<FarTriangle> far = far_triangles(quad);
+        if (far.size() < quad.size())
+            continue;
+        ++cases;
+        shared += far[1].shares_plane;
+        EXPECT_TRUE(far[1].shares_plane || !level);
+        EXPECT_FALSE(far[0].shares_plane || far[2].shares_plane) << seed;
+        for (const FarTriangle& one : far)
+            for (const dvec3& at : quad[one.number].corners) {
+                const test::Rational height =
+                    test::dot(test::exact(point_of(one.normal)),
+                              test::minus(test::exact(at), test::exact(point_of(one.a))));
+                EXPECT_TRUE(height >= test::Rational(one.lo) && height <= test::Rational(one.hi));
+            }
+    }
+    EXPECT_GT(cases, 900u);
+    EXPECT_GT(shared, cases * 9 / 10);
+}
+
 /// Some triangles that reach far, through each other or side by side, and eight rays to them.
 struct FarCase {
     std::vector<Triangle> triangles;
@@ -81,9 +115,10 @@ struct FarCase {
         for (uint64_t more = seed % 5; more > 1; --more)
             triangles.push_back({middle + point(random, size), middle + point(random, size),
                                  middle + point(random, size)});
+        std::vector<NumberedTriangle> numbered;
         for (uint32_t i = 0; i < triangles.size(); ++i)
-            if (const auto found = far_triangle(triangles[i], i))
-                far.push_back(*found);
+            numbered.push_back({triangles[i], i});
+        far = far_triangles(numbered);
         for (size_t lane = 0; lane < rays.size(); ++lane)
             rays[lane] = ray(random, middle, lane + seed);
         std::array<const Ray*, RayLanes::kCount> addresses;

@@ -5,7 +5,6 @@
 #include "plugin/build/built_scene.h"
 
 #include <algorithm>
-#include <optional>
 
 namespace ovc {
 namespace {
@@ -16,23 +15,18 @@ constexpr size_t kMaxOfScene = FarSearch::kMax;
 constexpr double kMinReach = 1.0 / 4;
 
 /// Returns the triangles of the leaf; none where they are not few, not far, or one is too thin.
-std::vector<FarTriangle> far_triangles_of(const BuiltScene& scene, const Leaf& leaf) {
+std::vector<NumberedTriangle> far_triangles_of(const BuiltScene& scene, const Leaf& leaf) {
     if (leaf.list().size() > kMaxOfScene ||
         max_component(leaf.box.extent()) < kMinReach * max_component(scene.level1.bounds.extent()))
         return {};
-    std::vector<FarTriangle> all;
-    for (const TriangleId id : leaf.list()) {
-        const std::optional<FarTriangle> far =
-            far_triangle(scene.soup.triangle(id), scene.numbers.of(id));
-        if (!far)
-            return {};
-        all.push_back(*far);
-    }
-    return all;
+    std::vector<NumberedTriangle> all;
+    for (const TriangleId id : leaf.list())
+        all.push_back({scene.soup.triangle(id), scene.numbers.of(id)});
+    return far_triangles(all).size() == all.size() ? all : std::vector<NumberedTriangle>();
 }
 
-bool contains(std::span<const FarTriangle> triangles, uint32_t number) {
-    return std::ranges::find(triangles, number, &FarTriangle::number) != triangles.end();
+bool contains(std::span<const NumberedTriangle> triangles, uint32_t number) {
+    return std::ranges::find(triangles, number, &NumberedTriangle::number) != triangles.end();
 }
 
 } // namespace
@@ -42,20 +36,22 @@ FarTriangles far_triangles_of(const BuiltScene& scene) {
     if (std::ranges::any_of(scene.shared, &SharedMesh::is_home))
         return {};
     FarTriangles far;
+    std::vector<NumberedTriangle> triangles;
     size_t left = scene.shared.size(); // parts of the scene
     for (const LeafRange& part : parts_of(scene.level1)) {
-        std::vector<FarTriangle> own;
+        std::vector<NumberedTriangle> own;
         if (part.count == 1)
             own = far_triangles_of(scene, scene.level1.leaves[part.first]);
-        if (own.empty() || far.triangles.size() + own.size() > kMaxOfScene) {
+        if (own.empty() || triangles.size() + own.size() > kMaxOfScene) {
             ++left;
             continue;
         }
         far.leaves.push_back(part.first);
-        for (const FarTriangle& triangle : own) // leaves share triangles
-            if (!contains(far.triangles, triangle.number))
-                far.triangles.push_back(triangle);
+        for (const NumberedTriangle& triangle : own) // leaves share triangles
+            if (!contains(triangles, triangle.number))
+                triangles.push_back(triangle);
     }
+    far.triangles = far_triangles(triangles);
     return left > 0 ? far : FarTriangles();
 }
 
