@@ -35,8 +35,8 @@ struct NumberedTriangle {
     Triangle corners;
     uint32_t number;
 };
-/// Returns those that are not too thin, in their order. Neighbours in one plane, as the two of a
-/// floor, share that where they have a corner in common.
+/// Returns at least those for which far_triangle() returns something, in their order. Neighbours in
+/// one plane, as the two of a floor, share that where they have a corner in common.
 std::vector<FarTriangle> far_triangles(std::span<const NumberedTriangle> triangles);
 
 /// What eight rays meet of some far triangles. A bit for each lane; those of rays that are not

@@ -20,9 +20,13 @@ std::vector<NumberedTriangle> far_triangles_of(const BuiltScene& scene, const Le
         max_component(leaf.box.extent()) < kMinReach * max_component(scene.level1.bounds.extent()))
         return {};
     std::vector<NumberedTriangle> all;
-    for (const TriangleId id : leaf.list())
-        all.push_back({scene.soup.triangle(id), scene.numbers.of(id)});
-    return far_triangles(all).size() == all.size() ? all : std::vector<NumberedTriangle>();
+    for (const TriangleId id : leaf.list()) {
+        const NumberedTriangle one{scene.soup.triangle(id), scene.numbers.of(id)};
+        if (!far_triangle(one.corners, one.number))
+            return {};
+        all.push_back(one);
+    }
+    return all;
 }
 
 bool contains(std::span<const NumberedTriangle> triangles, uint32_t number) {
@@ -51,7 +55,7 @@ FarTriangles far_triangles_of(const BuiltScene& scene) {
             if (!contains(triangles, triangle.number))
                 triangles.push_back(triangle);
     }
-    far.triangles = far_triangles(triangles);
+    far.triangles = far_triangles(triangles); // all of them: none is too thin
     return left > 0 ? far : FarTriangles();
 }
 
