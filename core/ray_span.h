@@ -4,6 +4,7 @@
 
 #include "core/ray.h"
 
+#include <array>
 #include <cassert>
 #include <concepts>
 #include <span>
@@ -19,6 +20,15 @@ struct FloatRay {
     float t_max;
 };
 static_assert(sizeof(FloatRay) == 32 && offsetof(FloatRay, dir) == 16);
+
+/// Room for what RaySpan::address() copies, which is not written where the rays are doubles.
+template <size_t count>
+struct RayRoom {
+    RayRoom() {}
+    union {
+        std::array<Ray, count> rays;
+    };
+};
 
 class RaySpan {
 public:

@@ -39,6 +39,12 @@ auto max_component(const V& v) {
     return glm::max(v.x, glm::max(v.y, v.z));
 }
 
+/// The sum of the magnitudes of v's components.
+template <class V>
+auto sum_of_magnitudes(const V& v) {
+    return glm::abs(v.x) + glm::abs(v.y) + glm::abs(v.z);
+}
+
 /// The axis (0, 1, 2) of the component of v that is largest in magnitude.
 template <class V>
 int major_axis(const V& v) {

@@ -17,10 +17,6 @@ constexpr double kRoomForOthers = 8;
 /// Weights that are off by more say too little, and the proof wants less than 1/8.
 constexpr double kMaxError = 1e-6;
 
-double sum_of_magnitudes(const dvec3& v) {
-    return std::abs(v.x) + std::abs(v.y) + std::abs(v.z);
-}
-
 void store(const dvec3& v, double (&to)[3]) {
     for (int axis = 0; axis < 3; ++axis)
         to[axis] = v[axis];
@@ -114,13 +110,15 @@ std::vector<FarTriangle> far_triangles(std::span<const NumberedTriangle> triangl
     std::vector<FarTriangle> all;
     for (size_t i = 0; i < triangles.size(); ++i) {
         const auto& [corners, number] = triangles[i];
+        const bool is_last = i + 1 == triangles.size();
+        // From there on the next one may share its plane.
+        const size_t common = is_last ? 0 : corner_in(corners, triangles[i + 1].corners);
         std::optional<FarTriangle> far;
         if (!all.empty())
             far = far_triangle_in(all.back(), corners, number);
-        if (!far && i + 1 < triangles.size()) // so that the next one may share its plane
-            far = far_triangle(from_corner(corners, corner_in(corners, triangles[i + 1].corners)),
-                               number);
         if (!far)
+            far = far_triangle(from_corner(corners, common), number);
+        if (!far && common != 0)
             far = far_triangle(corners, number);
         if (far)
             all.push_back(*far);

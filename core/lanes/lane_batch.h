@@ -47,18 +47,10 @@ public:
     }
 
 private:
-    /// For rays that are floats.
-    struct Room {
-        Room() {}
-        union {
-            std::array<Ray, Lanes::kCount> rays;
-        };
-    };
-
     // What is not in use is not written: most batches live for a few pairs.
     Lanes lanes_;
     std::array<Entry, Lanes::kCount> entries_;
-    Room room_;
+    RayRoom<Lanes::kCount> room_;
     int count_ = 0;
 };
 

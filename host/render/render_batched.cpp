@@ -24,7 +24,8 @@ constexpr uint64_t kRaysACore = 1 << 14;
 constexpr uint64_t kMinBatches = 24, kMinRays = 1024;
 
 constexpr size_t kMaxLanes = 2;
-/// The share of the time for which a backend traces that is always busy, but for handing over.
+/// A backend that traces for more of the time than this counts as always busy: what is left goes
+/// into handing over batches.
 constexpr double kBusy = 0.75;
 
 /// The state that both lanes share: the camera's rays, and the backend, which answers one call at a
@@ -93,7 +94,7 @@ private:
     const RenderObserver& observe_;
     const Film& film_;
     const bool has_cores_ = thread_count() <= kMaxLanes; // one for each lane
-    LoopThreads all_threads_{0};
+    LoopThreads all_threads_{0};                         // also of a backend in this program
     const Stopwatch since_begin_;
     std::atomic<bool> backend_is_busy_{false};
     std::atomic<uint64_t> begun_{0}; // camera rays

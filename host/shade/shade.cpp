@@ -95,10 +95,6 @@ static dvec3 facing(const dvec3& normal, const dvec3& towards) {
     return glm::dot(normal, towards) < 0 ? -normal : normal;
 }
 
-static double sum_of_magnitudes(const dvec3& v) {
-    return std::abs(v.x) + std::abs(v.y) + std::abs(v.z);
-}
-
 /// Returns the hit's weights of the corners, moved inwards where it is too close to an edge.
 /// doubled_area: of the triangle, above 0.
 static dvec3 weights_off_edges(const Hit& hit, const Triangle& t, double doubled_area,

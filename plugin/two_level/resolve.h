@@ -92,12 +92,7 @@ public:
     RayStates states(std::span<const uint32_t> rays) const {
         constexpr uint32_t asks = Query::kAnyHit ? OVC_RAY_ANY_HIT : 0;
         RayStates states;
-        struct Room { // not set where the rays are doubles
-            Room() {}
-            union {
-                std::array<Ray, RayLanes::kCount> rays;
-            };
-        } room;
+        RayRoom<RayLanes::kCount> room;
         states.set(rays.size(), asks,
                    [&](size_t lane) { return query_.rays.address(rays[lane], room.rays[lane]); });
         if (query_.without.empty())
