@@ -43,6 +43,7 @@ struct PassSlot {
     RayKind kind;
     KernelVariant variant;
     bool packets = false; // the kernel takes rays two at a time
+    uint32_t stack_words = 0;
     double kernel_seconds = 0;
 };
 

@@ -23,8 +23,9 @@ constexpr uint32_t kMaxBlocksInSoftware = 512; // fewer, as llvmpipe clears the 
 constexpr uint32_t kMaxWordsInRegisters = 32;  // Workaround::ShortRegisterStack
 // With words of 8 bytes in groups of 128 these are the 32 KiB that every device has.
 constexpr uint32_t kMaxSharedWords = 32;
-constexpr size_t kMaxLostShare =
-    256; // if more than one ray in so many is lost, kernels go on longer
+// If more than one ray in so many is lost, kernels go on longer. One in 256 takes 3 to 5 % of the
+// time of calls, and half a stack more as much of the kernel's.
+constexpr size_t kMaxLostShare = 512;
 // The max rays of a lane in a share, if there are shares for so many lanes of each thread: 8 of the
 // shares of 256 bits. With twice as many, calls of 4,096 rays take 4 % more time.
 constexpr size_t kLaneRays = 128;
@@ -208,7 +209,7 @@ bool Tracer::update(const Box& bounds, std::span<const Page> pages, std::span<co
     scene_ = top_.scene_in(bounds);
     all_fit_ = ovc::all_fit(pages, pool_.layout(), pool_.begin());
     stack_depth_ = stack_depth(top_.depth);
-    long_stacks_ = false;
+    min_stack_words_ = 0;
     upload_top_level();
     return bool(check_gl("updating pages"));
 }
@@ -291,8 +292,8 @@ RayForm Tracer::form() const {
 
 /// Returns how many words the kernel's stack has.
 uint32_t Tracer::stack_words(const KernelVariant& variant) const {
-    const bool is_short = variant.stack_words > 0 && !long_stacks_;
-    return is_short ? std::min(stack_depth_, variant.stack_words) : stack_depth_;
+    const uint32_t words = std::max(variant.stack_words, min_stack_words_);
+    return variant.stack_words > 0 ? std::min(stack_depth_, words) : stack_depth_;
 }
 
 /// Returns where the kernel's stack of so many words lies.
@@ -374,6 +375,7 @@ void Tracer::begin_to_compile_both(RayKind kind, const ShaderConfig& config) {
 Result<Done> Tracer::launch(PassSlot& slot) {
     ShaderConfig config = shader_config(slot.kind, slot.variant);
     config.packet = slot.packets ? kPacketRays : 1; // not where too many rays had to be parted
+    slot.stack_words = config.stack_depth;
     begin_to_compile_both(slot.kind, config);
     const Result<GLuint> program = kernels_.program(config);
     if (!program)
@@ -488,12 +490,16 @@ bool Tracer::lost_many(const Answers& answers, size_t rays) {
     return size_t(lost) > rays / kMaxLostShare;
 }
 
-/// Makes later kernels give up fewer rays: first by a stack for all words, then by giving each ray
-/// all the rounds there are. Returns false if they already give up as few as possible.
-bool Tracer::go_on_longer(const KernelVariant& variant) {
-    if (stack_words(variant) < stack_depth_)
-        return long_stacks_ = true;
-    return claims(variant) && !std::exchange(gives_rays_all_rounds_, true);
+/// Makes later kernels give up fewer rays than that of the pass: first by a stack half as long
+/// again, then by giving each ray all the rounds there are. Returns false if they already give up
+/// as few as possible.
+bool Tracer::go_on_longer(const PassSlot& slot) {
+    if (slot.stack_words < stack_depth_) {
+        min_stack_words_ =
+            std::max(min_stack_words_, slot.stack_words + (slot.stack_words + 1) / 2);
+        return true;
+    }
+    return claims(slot.variant) && !std::exchange(gives_rays_all_rounds_, true);
 }
 
 bool Tracer::are_passes_under_way() const {
@@ -513,7 +519,7 @@ Result<Done> Tracer::collect(Pass pass, Answers& answers) {
 Result<Done> Tracer::collect(PassSlot& slot, Answers& answers) {
     kind_ = slot.kind;
     read(slot, answers);
-    while (lost_many(answers, slot.sent->size()) && go_on_longer(slot.variant)) {
+    while (lost_many(answers, slot.sent->size()) && go_on_longer(slot)) {
         // If all pages fit they stay in place. Otherwise pages may have been evicted since the
         // pass.
         if (!all_fit_)

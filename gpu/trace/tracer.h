@@ -174,7 +174,7 @@ private:
     void read(PassSlot& slot, Answers& answers);
     static void read_lists(const PassSlot& slot, Answers& answers);
     static bool lost_many(const Answers& answers, size_t rays);
-    bool go_on_longer(const KernelVariant& variant);
+    bool go_on_longer(const PassSlot& slot);
     void say_where(uint32_t leaf);
     void upload_top_level();
     uint32_t way_to(uint32_t leaf, const Link& link) const;
@@ -186,7 +186,7 @@ private:
     std::span<const Page> page_data_;
     const DeviceInfo device_;
     RayKind kind_;                                  // of the pass that was collected last
-    bool long_stacks_ = false;                      // eight words were too few
+    uint32_t min_stack_words_ = 0;                  // fewer lost too many rays
     bool gives_rays_all_rounds_ = false;            // rays need all rounds that there are
     mutable std::optional<bool> keeps_float_pairs_; // the driver; asked when somebody wants to know
     const bool counts_rounds_ = needs(Workaround::CountedRounds);

@@ -372,6 +372,16 @@ TEST_F(TwoLevelGl, ALoopThatTheDriverEndsIsCountedAndDecidedInDouble) {
         }
 }
 
+TEST_F(TwoLevelGl, AStackGrowsUntilFewRaysNeedMore) {
+    const Soup soup = test::random_soup(9, 4000, 0.2);
+    const std::vector<Ray> rays = test::rays_from_outside(3, 3000);
+    const KernelVariant variant = *parse_variant("compute,group=64,both-sides,registers=1,images");
+    const auto structure = build(soup, {.variant = VariantChoice::Given, .given_variant = variant});
+    ASSERT_TRUE(structure);
+    test::expect_answers(*structure, rays, test::brute_force(soup, rays));
+    EXPECT_LT(structure->statistics().capped, rays.size() / 256); // most need more than one word
+}
+
 /// Rectangles that overlap in the plane z = 0, in front of a wall: level 1 cuts many thin cells
 /// along that plane.
 Soup overlapping_rectangles(int count) {
