@@ -53,9 +53,9 @@ struct TopLevel {
 };
 
 /// How many links a page has on average if all pages are resident: the builder opens large nodes,
-/// so that the tree can choose anew which nodes lie together (docs/decisions/0026). With 8, the
-/// kernel takes a tenth longer for shadow rays over the floor of dragons-2 in 200 leaves.
-inline constexpr uint64_t kLinksPerPage = 16;
+/// so that the tree can choose anew which nodes lie together (docs/decisions/0026). With 16, the
+/// kernel takes 7 % longer for camera rays at plants-5.
+inline constexpr uint64_t kLinksPerPage = 8;
 
 /// The max bytes of a tree with so many links if all pages share a frame.
 inline uint64_t max_top_level_bytes(uint64_t links) {
