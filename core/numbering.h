@@ -58,7 +58,8 @@ private:
         if (meshes() < 2 || count() == first())
             return;
         const uint64_t numbers = count() - first();
-        for (stretch_bits_ = 0; numbers >> stretch_bits_ > meshes();)
+        const uint64_t most = std::max(meshes(), kMinStretches);
+        for (stretch_bits_ = 0; numbers >> stretch_bits_ > most;)
             ++stretch_bits_;
         const uint32_t last = uint32_t(meshes()) - 1;
         uint32_t mesh = 0;
@@ -71,8 +72,9 @@ private:
     }
 
     std::vector<uint32_t> first_{0}; // of each chunk, and behind the last the count of all
-    // Numbers are cut into stretches of 2^stretch_bits_, about as many as there are chunks, so that
-    // id() looks at few of these.
+    // Numbers are cut into stretches of 2^stretch_bits_, about as many as there are chunks or more,
+    // so that id() looks at few of these: in most stretches of few chunks, at one.
+    static constexpr uint64_t kMinStretches = 1024;
     uint32_t stretch_bits_ = 0;
     std::vector<uint32_t> mesh_at_; // that holds the first number of a stretch; behind, the last
 };

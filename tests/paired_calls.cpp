@@ -195,8 +195,7 @@ Result<Done> run(const char* before, const char* after, const std::string& name,
         }
         fmt::print("{:10} {}, CPU {}; {:.0f} and {:.0f} ns of CPU time a ray\n", what,
                    spread(ratios), spread(cpu_ratios), median(cpu[0]), median(cpu[1]));
-        if (std::memcmp(answers[0].data(), answers[1].data(),
-                        answers[0].size() * sizeof(answers[0][0])) != 0)
+        if (std::memcmp(answers[0].data(), answers[1].data(), rays * sizeof(answers[0][0])) != 0)
             fmt::print("{:10} other answers\n", what);
     };
     fmt::print("{}, {} rays: the time of {} to that of {}, by turns; median (quartiles) of {}\n",
