@@ -43,7 +43,7 @@ struct PassSlot {
     RayKind kind;
     KernelVariant variant;
     bool packets = false; // the kernel takes rays two at a time
-    uint32_t stack_words = 0;
+    uint32_t stack_words = 0; // of its kernel's stack
     double kernel_seconds = 0;
 };
 
