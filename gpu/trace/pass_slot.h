@@ -42,7 +42,7 @@ struct PassSlot {
     SentRays* sent = nullptr; // null: it is over
     RayKind kind;
     KernelVariant variant;
-    bool packets = false; // the kernel takes rays two at a time
+    bool packets = false;     // the kernel takes rays two at a time
     uint32_t stack_words = 0; // of its kernel's stack
     double kernel_seconds = 0;
 };
