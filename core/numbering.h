@@ -72,8 +72,9 @@ private:
     }
 
     std::vector<uint32_t> first_{0}; // of each chunk, and behind the last the count of all
-    // Numbers are cut into stretches of 2^stretch_bits_, about as many as there are chunks or more,
-    // so that id() looks at few of these: in most stretches of few chunks, at one.
+    // Numbers are cut into stretches of 2^stretch_bits_, about as many as there are chunks, so that
+    // id() looks at few of these. Where there are few chunks, so many stretches nearly always hold
+    // one alone, and nothing is searched.
     static constexpr uint64_t kMinStretches = 1024;
     uint32_t stretch_bits_ = 0;
     std::vector<uint32_t> mesh_at_; // that holds the first number of a stretch; behind, the last
