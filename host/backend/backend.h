@@ -66,6 +66,9 @@ public:
     virtual bool saves() const { return false; }
     /// Writes what was built, as a later run over the same soup takes it in BackendOptions::saved.
     virtual Result<Done> save(const ByteSink&) const { return Error{"this backend saves nothing"}; }
+    /// Whether pages lie outside of the GPU's memory. The order of calls then decides which of them
+    /// are moved.
+    virtual bool moves_pages() const { return false; }
     /// Returns what was counted since the backend was built; 0 for what a backend does not have.
     virtual ovc_statistics statistics() const = 0;
     /// Returns the name, for the user, of the GL renderer or the CPU library that does the work.

@@ -236,7 +236,9 @@ public:
           scene_(std::move(scene)),
           numbers_(std::move(numbers)),
           on_disk_(options.on_disk),
-          is_two_level_(structure_of(options.kind) == OVC_STRUCTURE_TWO_LEVEL) {}
+          is_two_level_(structure_of(options.kind) == OVC_STRUCTURE_TWO_LEVEL) {
+        look_for_pages();
+    }
 
     Result<Done> intersect(std::span<const Ray> rays, const Exclusions& without,
                            std::span<Hit> hits) override {
@@ -300,6 +302,7 @@ public:
             watched.emplace(*watch_);
         if (const Result<Done> done = checked(api().commit(scene_.get())); !done)
             return done.error();
+        look_for_pages();
         return true;
     }
 
@@ -315,6 +318,8 @@ public:
         return checked(api().save(scene_.get(), write, const_cast<ByteSink*>(&sink)));
     }
 
+    bool moves_pages() const override { return moves_pages_; }
+
     ovc_statistics statistics() const override {
         ovc_statistics statistics{};
         statistics.struct_size = sizeof(statistics);
@@ -327,6 +332,12 @@ public:
     std::string renderer() const override { return renderer_; }
 
 private:
+    /// Commit moves all pages that fit.
+    void look_for_pages() {
+        const ovc_statistics now = statistics();
+        moves_pages_ = moves_pages_ || now.bytes_in < now.level2_bytes;
+    }
+
     const ovc_api& api() const { return *device_.api(); }
     Result<Done> checked(ovc_result result) const {
         return explained(on_disk_, device_.checked(result));
@@ -371,6 +382,7 @@ private:
     MeshNumbers numbers_;
     const SceneOnDisk* const on_disk_; // null where the scene lies in memory
     const bool is_two_level_;          // the systems of the thesis neither save nor update
+    bool moves_pages_ = false;
 };
 
 /// Warns of a budget beyond the memory. A scene may take less than its budget, so it is no error.

@@ -5,13 +5,15 @@
 
 #include "core/system/parallel.h"
 #include "core/system/stopwatch.h"
+#include "core/system/turn_order.h"
 #include "host/shade/shading.h"
 
 #include <algorithm>
 #include <atomic>
 #include <future>
-#include <mutex>
 #include <optional>
+#include <system_error>
+#include <utility>
 
 namespace ovc {
 namespace {
@@ -29,18 +31,26 @@ constexpr size_t kMaxLanes = 2;
 constexpr double kBusy = 0.75;
 
 /// The state that both lanes share: the camera's rays, and the backend, which answers one call at a
-/// time.
+/// time. Where pages are moved, lanes take turns in their order: which pages move is the same in
+/// every run then. Elsewhere none waits for another's shading.
 class Work {
 public:
     Work(const CameraRays& camera, const Sight& sight, Backend& backend,
-         const RenderObserver& observe, const Film& film)
-        : camera_(camera), sight_(sight), backend_(backend), observe_(observe), film_(film) {}
+         const RenderObserver& observe, const Film& film, size_t lanes)
+        : camera_(camera),
+          sight_(sight),
+          backend_(backend),
+          observe_(observe),
+          film_(film),
+          turns_(lanes, backend.moves_pages()) {}
 
     const Sight& sight() const { return sight_; }
+    TurnOrder& turns() { return turns_; }
 
     /// Makes the next camera rays, at most `most`. Returns false where none are left.
-    bool begin(size_t most, RayList<Path>& paths) {
-        const uint64_t first = begun_.fetch_add(most);
+    bool begin(size_t lane, size_t most, RayList<Path>& paths) {
+        const uint64_t first =
+            turns_.take(lane, [&] { return std::exchange(begun_, begun_ + most); });
         if (first >= camera_.size())
             return false;
         camera_.make(first, std::min<uint64_t>(most, camera_.size() - first), paths);
@@ -50,21 +60,22 @@ public:
     /// Runs ask(backend), which traces `rays`. Returns false where the rendering has stopped; the
     /// answers do not count then.
     template <class Ask>
-    bool trace(const RayCounts& rays, Ask&& ask) {
-        const std::lock_guard turn(turn_);
-        if (stopped_)
-            return false;
-        const LoopThreads::Scope scope(all_threads_);
-        const Stopwatch watch;
-        const Result<Done> done = ask(backend_);
-        report_.seconds_trace += watch.seconds();
-        backend_is_busy_ = report_.seconds_trace > kBusy * since_begin_.seconds();
-        if (!done)
-            error_ = done.error();
-        report_.rays += rays;
-        report_.pixels_done = film_.pixels_done();
-        stopped_ = !done || (observe_ && !observe_(report_));
-        return !stopped_;
+    bool trace(size_t lane, const RayCounts& rays, Ask&& ask) {
+        return turns_.take(lane, [&] {
+            if (stopped_)
+                return false;
+            const LoopThreads::Scope scope(all_threads_);
+            const Stopwatch watch;
+            const Result<Done> done = ask(backend_);
+            report_.seconds_trace += watch.seconds();
+            backend_is_busy_ = report_.seconds_trace > kBusy * since_begin_.seconds();
+            if (!done)
+                error_ = done.error();
+            report_.rays += rays;
+            report_.pixels_done = film_.pixels_done();
+            stopped_ = !done || (observe_ && !observe_(report_));
+            return !stopped_;
+        });
     }
 
     /// Returns the threads on which a lane makes and shades rays; own: the one that the lane has. A
@@ -75,9 +86,8 @@ public:
         return has_cores_ && !backend_is_busy_ ? own : all_threads_;
     }
 
-    void shaded_for(double seconds) {
-        const std::lock_guard turn(turn_);
-        report_.seconds_shade += seconds;
+    void shaded_for(size_t lane, double seconds) {
+        turns_.take(lane, [&] { report_.seconds_shade += seconds; });
     }
 
     Result<RenderReport> report() {
@@ -97,8 +107,9 @@ private:
     LoopThreads all_threads_{0};                         // also of a backend in this program
     const Stopwatch since_begin_;
     std::atomic<bool> backend_is_busy_{false};
-    std::atomic<uint64_t> begun_{0}; // camera rays
-    std::mutex turn_;                // guards the backend and the members below
+    TurnOrder turns_;
+    // Like the backend, these are for the lane whose turn it is.
+    uint64_t begun_ = 0; // camera rays
     bool stopped_ = false;
     std::optional<Error> error_;
     RenderReport report_;
@@ -106,8 +117,10 @@ private:
 
 class Lane {
 public:
-    Lane(Work& work, const Integrator& integrator, size_t lights, size_t batch_rays, Film& film)
+    Lane(Work& work, size_t number, const Integrator& integrator, size_t lights, size_t batch_rays,
+         Film& film)
         : work_(work),
+          number_(number),
           integrator_(integrator),
           shading_(integrator, lights, film),
           batch_rays_(batch_rays) {
@@ -123,13 +136,13 @@ public:
                     return;
                 reuse(now_, spawned_.paths);
             }
-        work_.shaded_for(watch.seconds() - seconds_tracing_);
+        work_.shaded_for(number_, watch.seconds() - seconds_tracing_);
     }
 
 private:
     bool begin() {
         const LoopThreads::Scope scope(work_.threads(own_thread_));
-        return work_.begin(batch_rays_, spawned_.paths);
+        return work_.begin(number_, batch_rays_, spawned_.paths);
     }
 
     bool trace_paths() {
@@ -200,7 +213,7 @@ private:
     template <class Ask>
     bool trace(const RayCounts& rays, Ask&& ask) {
         const Stopwatch watch;
-        const bool goes_on = work_.trace(rays, ask);
+        const bool goes_on = work_.trace(number_, rays, ask);
         seconds_tracing_ += watch.seconds();
         return goes_on;
     }
@@ -224,6 +237,7 @@ private:
     }
 
     Work& work_;
+    const size_t number_;
     const Integrator& integrator_;
     Shading shading_;
     const size_t batch_rays_;
@@ -247,13 +261,22 @@ Result<RenderReport> render_batched(const Integrator& integrator, size_t lights,
     const uint64_t wanted =
         std::clamp(camera.size() / kMinBatches + 1, kMinRays, kRaysACore * thread_count());
     const size_t batch = size_t(std::min<uint64_t>(batch_rays, wanted));
-    Work work(camera, sight, backend, observe, film);
-    std::vector<std::future<void>> lanes(std::min(kMaxLanes, thread_count()));
-    for (std::future<void>& lane : lanes)
-        lane = std::async(std::launch::async,
-                          [&] { Lane(work, integrator, lights, batch, film).run(); });
-    for (std::future<void>& lane : lanes)
-        lane.get();
+    const size_t lanes = std::min(kMaxLanes, thread_count());
+    Work work(camera, sight, backend, observe, film, lanes);
+    const auto run = [&](size_t lane) {
+        const TurnOrder::Seat seat(work.turns(), lane);
+        Lane(work, lane, integrator, lights, batch, film).run();
+    };
+    std::vector<std::future<void>> others;
+    for (size_t lane = 1; lane < lanes; ++lane)
+        try {
+            others.push_back(std::async(std::launch::async, run, lane));
+        } catch (const std::system_error&) { // no thread is left: the first lane does it all
+            work.turns().leave(lane);
+        }
+    run(0);
+    for (std::future<void>& other : others)
+        other.get();
     return work.report();
 }
 

@@ -10,6 +10,8 @@
 
 #include <gtest/gtest.h>
 
+#include <optional>
+
 namespace ovc {
 namespace {
 
@@ -112,6 +114,37 @@ TEST(Modes, HaveTheSameBitsUnderAnyBudgetAndMixedMakesFewerPasses) {
         expect_same_bits(picture(RenderMode::Batched, shown, **gpu).image, expected.image);
         EXPECT_LT(mixed, (*gpu)->statistics().passes - mixed);
     }
+}
+
+TEST(Modes, MoveTheSamePagesInEveryRun) {
+    const Shown shown("glass");
+    BackendOptions options;
+    options.kind = BackendKind::TwoLevel;
+    options.leaves = 12;
+    for (const RenderMode mode : {RenderMode::Batched, RenderMode::Mixed}) {
+        std::optional<ovc_statistics> first;
+        for (int run = 0; run < 4; ++run) {
+            options.gpu_memory.bytes = 1 << 19;
+            const auto gpu = make_backend(shown.scene.soup, options, {});
+            if (!gpu)
+                GTEST_SKIP() << gpu.error().message;
+            EXPECT_TRUE((*gpu)->moves_pages());
+            const uint64_t at_first = (*gpu)->statistics().bytes_in;
+            picture(mode, shown, **gpu);
+            const ovc_statistics now = (*gpu)->statistics();
+            EXPECT_GT(now.bytes_in, at_first);
+            if (!first)
+                first = now;
+            EXPECT_EQ(now.bytes_in, first->bytes_in);
+            EXPECT_EQ(now.passes, first->passes);
+            EXPECT_EQ(now.ray_visits, first->ray_visits);
+        }
+    }
+    options.gpu_memory = {};
+    const auto whole = make_backend(shown.scene.soup, options, {});
+    ASSERT_TRUE(whole);
+    EXPECT_FALSE((*whole)->moves_pages());
+    EXPECT_FALSE(make_cpu_backend(shown.scene.soup)->moves_pages());
 }
 
 TEST(Modes, MixedStopsWhenToldAndKeepsThePixelsThatAreDone) {
