@@ -65,6 +65,7 @@ DriverThreads DriverThreads::find() {
         if (unnamed || name.starts_with("llvmpipe-"))
             found.threads_.push_back(thread);
     }
+    found.cores_ = unsigned(std::max<size_t>(own_cores().size(), 1));
     return found;
 }
 
@@ -72,9 +73,6 @@ DriverThreads DriverThreads::find() {
 
 void name_device_thread() {}
 void keep_to_cores(uint32_t) {}
-static std::vector<int> own_cores() {
-    return {};
-}
 static double cpu_seconds(int) {
     return 0;
 }
@@ -100,7 +98,7 @@ std::optional<double> DriverThreads::seconds_each() const {
         workers += now > kIdle;
     }
     // A driver that has threads for each kind of kernel runs one kind at a time.
-    workers = std::min(workers, std::max(unsigned(own_cores().size()), 1u));
+    workers = std::min(workers, cores_);
     if (all <= 0) // the driver works on threads that it started after find()
         return {};
     return all / std::max(workers, 1u);

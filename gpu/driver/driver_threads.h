@@ -34,6 +34,7 @@ public:
 
 private:
     std::vector<int> threads_;
+    unsigned cores_ = 1; // that they may run on
     std::vector<double> started_;
 };
 

@@ -64,7 +64,7 @@ void GlThread::begin(Job& job, std::function<void(GlState&)> work) {
 void GlThread::finish(Job& job, const std::function<void()>& idle) {
     constexpr std::chrono::milliseconds kBetweenCalls(10);
     std::unique_lock lock(mutex_);
-    while (!changed_.wait_for(lock, kBetweenCalls, [&] { return job.is_done_; })) {
+    while (!job.done_.wait_for(lock, kBetweenCalls, [&] { return job.is_done_; })) {
         lock.unlock();
         idle();
         lock.lock();
@@ -139,10 +139,10 @@ void GlThread::serve() {
             thrown = std::current_exception();
         }
         lock.lock();
-        job.thrown_ = thrown;
-        job.is_done_ = true; // from here on it may be gone
         jobs_.pop_front();
-        changed_.notify_all();
+        job.thrown_ = thrown;
+        job.is_done_ = true;
+        job.done_.notify_all(); // once the mutex is free, the job may be gone
     }
 }
 

@@ -75,6 +75,7 @@ public:
     private:
         friend class GlThread;
         std::function<void(GlState&)> work_;
+        std::condition_variable done_;
         bool is_done_ = true;
         std::exception_ptr thrown_{};
     };
@@ -113,9 +114,9 @@ private:
     const LogSink log_;
     const DeviceLimits limits_;
     SharedBudget budget_;
-    std::mutex mutex_; // guards the members below, and jobs
-    std::condition_variable changed_;
-    std::deque<Job*> jobs_; // waiting, and in front the one under way
+    std::mutex mutex_;                // guards the members below, and jobs
+    std::condition_variable changed_; // jobs_ has another, stop_ or started_ is set
+    std::deque<Job*> jobs_;           // waiting, and in front the one under way
     std::optional<Result<Done>> started_;
     bool stop_ = false;
     std::atomic<uint32_t> generation_{0};

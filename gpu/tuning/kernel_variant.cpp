@@ -106,6 +106,7 @@ ChosenVariants default_variants(const DeviceInfo& device, bool compute) {
     variant.stack_words = variant.stack == StackPlace::Shared ? kSharedWords : kRegisterWords;
     if (!device.is_software)
         return ChosenVariants(variant);
+    variant.group_size = compute ? 32 : 64;
     variant.packets = compute;
     variant.refill = compute && device.can_refill();
     variant.branches = false;
@@ -119,8 +120,6 @@ ChosenVariants default_variants(const DeviceInfo& device, bool compute) {
     // to which rays among few frames have far to go, unless any hit ends them.
     using enum RayKind::Frames;
     variants[{.frames = Few, .coherent = true}].refill = false;
-    for (const bool any_hit : {false, true})
-        variants[{.any_hit = any_hit, .frames = Few}].group_size = compute ? 32 : 64;
     return variants;
 }
 
@@ -156,6 +155,7 @@ std::vector<KernelVariant> neighbours(const KernelVariant& from, const DeviceInf
         add([](KernelVariant& v) {
             v.compute = !v.compute;
             v.packets = v.refill = false;
+            v.group_size = KernelVariant{}.group_size; // the fragment kernel has no groups
             if (v.stack == StackPlace::Shared)
                 v.stack = StackPlace::Registers, v.stack_words = kRegisterWords;
         });
