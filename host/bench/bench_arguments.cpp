@@ -5,6 +5,7 @@
 #include "core/text/suggestion.h"
 #include "host/arguments/backend_arguments.h"
 #include "host/arguments/memory_size.h"
+#include "host/bench/workload.h"
 #include "host/output/output.h"
 #include "testscenes/catalog.h"
 
@@ -30,8 +31,9 @@ static constexpr std::array<std::string_view, 2> kPictures = {"samples", "tolera
 /// The reference takes four times as many samples, and more would exceed a picture's limit.
 static constexpr uint64_t kMaxPictureSamples = 1024, kDefaultSamples = 64;
 
-static constexpr std::array<std::string_view, 5> kWorkloads = {"primary", "shadow", "diffuse",
-                                                               "edges", "frame"};
+static constexpr std::array<std::string_view, 8> kWorkloads = {
+    "primary",       "shadow",       "diffuse",       "edges",
+    "primary-small", "shadow-small", "diffuse-small", "frame"};
 
 void BenchWords::add_to(CLI::App& app) {
     app.add_option("SCENE", scenes,
@@ -73,7 +75,9 @@ void BenchWords::add_settings_to(CLI::App& app) {
            "of --pictures samples: 64")
         ->type_name("N");
     app.add_option("--workloads", workloads,
-                   fmt::format("Which of {}; default: all but edges", fmt::join(kWorkloads, ", ")))
+                   fmt::format("Which of {}; small: in calls of {} rays; default: primary, shadow, "
+                               "diffuse, frame",
+                               fmt::join(kWorkloads, ", "), kSmallCallRays))
         ->type_name("NAME,...");
     app.add_flag(
         "--float-rays", float_rays,

@@ -52,7 +52,7 @@ struct BenchJob {
     SweepOver sweep = SweepOver::Rays;
     PicturesBy pictures = PicturesBy::Samples;
     uint64_t most = UINT64_MAX;         // max x of a sweep, or samples
-    std::vector<std::string> workloads; // empty: all but edges
+    std::vector<std::string> workloads; // empty: primary, shadow, diffuse, frame
     bool float_rays = false;            // rays in numbers that floats have
     std::vector<std::string> scenes;
     bool scene_alone = false; // of the bars, only those about the scene

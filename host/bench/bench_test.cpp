@@ -120,6 +120,23 @@ public:
 using FirstCopy = CopyNamed<0>;
 using OtherCopy = CopyNamed<8>;
 
+TEST_F(RunContenders, AskSmallCallsForAllRays) {
+    enter("one", 0);
+    RaySet set{"primary", RayQuery::Nearest, std::vector<Ray>(2 * kSmallCallRays + 1)};
+    workloads = {ray_workload(set), ray_workload(set)};
+    ask_in_small_calls(workloads[1]);
+    EXPECT_EQ(workloads[1].name, "primary-small");
+    const auto calls_for = [&](Workload& workload) {
+        calls.clear();
+        const Result<uint64_t> rays = workload.run(*entrants[0].backend);
+        EXPECT_TRUE(rays && *rays == set.rays.size());
+        return calls.size();
+    };
+    EXPECT_EQ(calls_for(workloads[0]), 1u);
+    EXPECT_EQ(calls_for(workloads[1]), 3u);
+    EXPECT_EQ(workloads[1].answers(), workloads[0].answers());
+}
+
 TEST_F(RunContenders, OnTheCpuAreTimedByWhatAThreadTook) {
     entrants.push_back({Contender{}, std::make_unique<Interrupted>()});
     workloads.push_back(ray_workload({"rays", RayQuery::Nearest, std::vector<Ray>(3)}));

@@ -41,6 +41,10 @@ Result<std::vector<Workload>> workloads_of(const Scene& scene, const Camera& cam
             return sets.error();
         for (RaySet& set : *sets)
             workloads.push_back(ray_workload(std::move(set)));
+        for (size_t i = 0; asked.small_calls && i < sets->size(); ++i) {
+            workloads.push_back(workloads[i]);
+            ask_in_small_calls(workloads.back());
+        }
     }
     if (asked.edges) {
         Result<RaySet> edges = make_edge_set(scene, camera, width, height, reference);

@@ -22,6 +22,7 @@ struct Asked {
     bool ray_sets = true; // primary, shadow, diffuse
     bool frame = true;
     bool edges = false;                  // rays at edges and corners
+    bool small_calls = false;            // primary-small, and so on
     bool float_rays = false;             // rays in numbers that floats have
     std::vector<uint32_t> primary_sides; // also camera rays of squares of so many pixels a side
 };

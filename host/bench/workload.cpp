@@ -5,6 +5,7 @@
 
 #include "host/render/render.h"
 
+#include <algorithm>
 #include <bit>
 #include <cassert>
 #include <cmath>
@@ -57,8 +58,18 @@ DistanceError distance_error(std::span<const double> distances, std::span<const 
 Workload ray_workload(RaySet set) {
     const size_t count = set.rays.size();
     if (set.query == RayQuery::Nearest)
-        return {std::move(set.name), NearestTask{std::move(set.rays), std::vector<Hit>(count)}};
-    return {std::move(set.name), OcclusionTask{std::move(set.rays), std::vector<uint8_t>(count)}};
+        return {std::move(set.name),
+                NearestTask{std::move(set.rays), std::vector<Hit>(count), count}};
+    return {std::move(set.name),
+            OcclusionTask{std::move(set.rays), std::vector<uint8_t>(count), count}};
+}
+
+void ask_in_small_calls(Workload& workload) {
+    workload.name += "-small";
+    if (auto* nearest = std::get_if<NearestTask>(&workload.task))
+        nearest->call_rays = kSmallCallRays;
+    else
+        std::get<OcclusionTask>(workload.task).call_rays = kSmallCallRays;
 }
 
 static void round_rays(std::vector<Ray>& rays) {
@@ -79,14 +90,29 @@ Workload frame_workload(const Scene& scene, const Camera& camera, uint32_t width
     return {"frame", FrameTask{&scene, camera, {width, height}, std::move(stop), {}}};
 }
 
+/// Calls ask(first, count) for the task's rays, some in each call.
+template <class Task, class Ask>
+static Result<uint64_t> in_calls(const Task& task, Ask&& ask) {
+    for (size_t first = 0; first < task.rays.size(); first += task.call_rays) {
+        const Result<Done> traced = ask(first, std::min(task.call_rays, task.rays.size() - first));
+        if (!traced)
+            return traced.error();
+    }
+    return task.rays.size();
+}
+
 static Result<uint64_t> run(NearestTask& task, Backend& backend) {
-    const Result<Done> traced = backend.intersect(task.rays, {}, task.hits);
-    return traced ? Result<uint64_t>(task.rays.size()) : traced.error();
+    return in_calls(task, [&](size_t first, size_t count) {
+        return backend.intersect(std::span(task.rays).subspan(first, count), {},
+                                 std::span(task.hits).subspan(first, count));
+    });
 }
 
 static Result<uint64_t> run(OcclusionTask& task, Backend& backend) {
-    const Result<Done> traced = backend.occluded(task.rays, {}, task.occluded);
-    return traced ? Result<uint64_t>(task.rays.size()) : traced.error();
+    return in_calls(task, [&](size_t first, size_t count) {
+        return backend.occluded(std::span(task.rays).subspan(first, count), {},
+                                std::span(task.occluded).subspan(first, count));
+    });
 }
 
 static Result<uint64_t> run(FrameTask& task, Backend& backend) {

@@ -23,11 +23,13 @@ using StopRequest = std::function<bool()>;
 struct NearestTask {
     std::vector<Ray> rays;
     std::vector<Hit> hits; // one a ray
+    size_t call_rays;      // of each call, but for the last
 };
 
 struct OcclusionTask {
     std::vector<Ray> rays;
     std::vector<uint8_t> occluded; // one a ray
+    size_t call_rays;              // as above
 };
 
 struct FrameTask {
@@ -70,6 +72,11 @@ DistanceError distance_error(std::span<const double> distances, std::span<const 
 /// Returns a workload that answers the rays. Its answers are the triangles' ids, mesh in the upper
 /// half, or 1 and 0 for occlusion.
 Workload ray_workload(RaySet set);
+
+inline constexpr size_t kSmallCallRays = 1024;
+/// Makes the workload ask for so many rays in a call instead of all at once, and tells that in its
+/// name: "primary-small". Not for a frame.
+void ask_in_small_calls(Workload& workload);
 
 /// Rounds the workload's rays to floats, so that contenders that take floats answer the same rays.
 void round_rays(Workload& workload);

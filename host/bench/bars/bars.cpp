@@ -100,24 +100,45 @@ Bar certify_bar(const BenchResult& mesh) {
     return frame;
 }
 
-Bar edges_bar(const BenchResult& mesh) {
-    Bar bar{"call of rays at sides and corners against primary, mesh",
-            Better::Less,
-            4,
-            2,
-            {},
-            "times as long, a ray"};
-    const Measurement* edges = find(mesh, "certified", "edges");
-    const Measurement* primary = find(mesh, "certified", "primary");
-    if (!edges || !primary)
-        return bar;
-    std::vector<double> over = edges->seconds, under = primary->seconds;
-    for (double& seconds : over)
-        seconds /= double(edges->rays);
-    for (double& seconds : under)
-        seconds /= double(primary->rays);
-    bar.take(paired_ratio(over, under));
+namespace {
+
+/// Returns the line with the certified call seconds a ray of one workload divided by those of
+/// another.
+Bar a_ray(const BenchResult& mesh, const std::string& over, const std::string& under, Bar bar) {
+    bar.note = "times as long, a ray";
+    const auto seconds_of = [&](const std::string& workload) {
+        std::vector<double> each;
+        if (const Measurement* measured = find(mesh, "certified", workload))
+            for (const double seconds : measured->seconds)
+                each.push_back(seconds / double(measured->rays));
+        return each;
+    };
+    const std::vector<double> dividend = seconds_of(over), divisor = seconds_of(under);
+    if (!dividend.empty() && !divisor.empty())
+        bar.take(paired_ratio(dividend, divisor));
     return bar;
+}
+
+} // namespace
+
+Bar edges_bar(const BenchResult& mesh) {
+    return a_ray(
+        mesh, "edges", "primary",
+        {"call of rays at sides and corners against primary, mesh", Better::Less, 4, 2, {}, {}});
+}
+
+std::vector<Bar> small_calls_bars(const BenchResult& mesh) {
+    std::vector<Bar> bars;
+    for (const std::string set : {"primary", "shadow", "diffuse"})
+        bars.push_back(
+            a_ray(mesh, set + "-small", set,
+                  {fmt::format("calls of {} rays against one, mesh: {}", kSmallCallRays, set),
+                   Better::Less,
+                   1.3,
+                   1.1,
+                   {},
+                   {}}));
+    return bars;
 }
 
 std::vector<Bar> leaves_bars(const BenchResult& sweep) {

@@ -66,6 +66,9 @@ std::vector<Bar> call_bars(const BenchResult& scene, const std::string& what, st
 Bar certify_bar(const BenchResult& mesh);
 /// Returns the call seconds of a ray at a side or corner divided by those of a primary ray.
 Bar edges_bar(const BenchResult& mesh);
+/// Returns a line for each set of rays: the call seconds of kSmallCallRays rays a call divided by
+/// those of all rays in one call.
+std::vector<Bar> small_calls_bars(const BenchResult& mesh);
 /// Returns call seconds, summed over all sets of rays, divided by those of one leaf. Entrants are
 /// certified with several numbers of leaves, the first with one leaf.
 std::vector<Bar> leaves_bars(const BenchResult& sweep);

@@ -75,6 +75,20 @@ TEST(Bars, DivideARayAtASideByAPrimaryRay) {
     EXPECT_EQ(verdict(edges_bar(r)), "passed");
 }
 
+TEST(Bars, DivideSmallCallsByOneCall) {
+    BenchResult r = example_of_bars();
+    EXPECT_EQ(verdict(small_calls_bars(r)[0]), "skipped");
+    r.workloads.push_back("primary-small");
+    Measurement small = r.measurements[0];
+    small.workload = r.workloads.size() - 1;
+    for (double& seconds : small.seconds)
+        seconds *= 1.25;
+    r.measurements.push_back(small);
+    EXPECT_DOUBLE_EQ(*small_calls_bars(r)[0].measured, 1.25);
+    EXPECT_EQ(verdict(small_calls_bars(r)[0]), "passed");
+    EXPECT_EQ(verdict(small_calls_bars(r)[1]), "skipped");
+}
+
 TEST(Bars, AreNotJudgedWhereTheirTurnsLieOnBothSides) {
     BenchResult r = example_of_bars();
     for (Measurement& m : r.measurements)

@@ -84,13 +84,18 @@ public:
 
     Result<BarsResult> run() {
         using Step = Result<Done> (BarsRun::*)();
-        const std::pair<Step, bool> steps[] = {
-            {&BarsRun::import, true},  {&BarsRun::kernels, true},
-            {&BarsRun::edges, true},   {&BarsRun::high_quality, false},
-            {&BarsRun::leaves, true},  {&BarsRun::leaves_of_scenes, true},
-            {&BarsRun::scenes, false}, {&BarsRun::budget, false},
-            {&BarsRun::build, true},   {&BarsRun::programs, true},
-            {&BarsRun::rest, true}};
+        const std::pair<Step, bool> steps[] = {{&BarsRun::import, true},
+                                               {&BarsRun::kernels, true},
+                                               {&BarsRun::edges, true},
+                                               {&BarsRun::small_calls, true},
+                                               {&BarsRun::high_quality, false},
+                                               {&BarsRun::leaves, true},
+                                               {&BarsRun::leaves_of_scenes, true},
+                                               {&BarsRun::scenes, false},
+                                               {&BarsRun::budget, false},
+                                               {&BarsRun::build, true},
+                                               {&BarsRun::programs, true},
+                                               {&BarsRun::rest, true}};
         for (const auto& [step, is_about_mesh] : steps) {
             if (job_.scene_alone && !is_about_mesh)
                 continue;
@@ -182,6 +187,16 @@ private:
         if (!r)
             return r.error();
         add({edges_bar(**r)});
+        return Done{};
+    }
+
+    /// The same rays in many small calls and in one.
+    Result<Done> small_calls() {
+        const Asked asked{.size = large_, .frame = false, .small_calls = true};
+        const Result<const BenchResult*> r = bench(job_.mesh, asked, {kCertifiedBar}, job_.repeats);
+        if (!r)
+            return r.error();
+        add(small_calls_bars(**r));
         return Done{};
     }
 
