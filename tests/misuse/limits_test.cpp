@@ -13,6 +13,8 @@
 
 #include <filesystem>
 #include <fstream>
+#include <iterator>
+#include <string>
 
 namespace ovc {
 namespace {
@@ -59,6 +61,31 @@ TEST_F(Limits, AThreadThatIsRefusedIsOutOfMemory) {
     }
     EXPECT_GT(refused, 1);
     EXPECT_LT(refused, 12);
+}
+
+TEST_F(Limits, ARenderingWithoutAThreadForItsOtherLaneEndsAndIsWhole) {
+    const fs::path picture =
+        fs::path(testing::TempDir()) / ("threads_" + std::to_string(getpid()) + ".png");
+    std::string expected; // the bytes of the first picture
+    for (int threads = 24; threads-- > 0;) {
+        fs::remove(picture);
+        // So small a budget lets lanes wait for each other.
+        const auto run = test::run_shell(
+            "OVC_TEST_THREADS=" + std::to_string(threads) +
+            " LD_PRELOAD=" OVC_BINARY_DIR "/bin/librefuse_threads.so timeout 60 " OVC_BINARY_DIR
+            "/bin/overcast render glass --size 32x32 --gpu-memory 300K -o '" +
+            picture.string() + "'");
+        ASSERT_THAT(run.exit_code, AnyOf(0, 1)) << threads << " threads: " << run.output;
+        if (run.exit_code == 1)
+            continue;
+        std::ifstream file(picture, std::ios::binary);
+        const std::string bytes(std::istreambuf_iterator<char>(file), {});
+        if (expected.empty())
+            expected = bytes;
+        EXPECT_EQ(bytes, expected) << threads << " threads";
+    }
+    EXPECT_FALSE(expected.empty());
+    fs::remove(picture);
 }
 
 TEST_F(Limits, LittleAddressSpaceIsASentence) {
