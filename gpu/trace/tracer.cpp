@@ -28,8 +28,8 @@ constexpr uint32_t kMaxSharedWords = 32;
 constexpr size_t kMaxLostShare = 512;
 // The max rays of a lane in a share, if there are shares for so many lanes of each thread: 8 of the
 // shares of 256 bits. With twice as many, calls of 4,096 rays take 4 % more time. Where that leaves
-// a lane few rays, half the lanes wait half as often for the last of a share: calls of 1,024 rays
-// take 3 to 8 % less.
+// a lane few rays, half the lanes take them, in half as many shares, each of which ends with lanes
+// that wait for its last ray (docs/decisions/0012).
 constexpr size_t kLaneRays = 128;
 constexpr size_t kLanesAThread = 64;
 constexpr size_t kFewLaneRays = 8;

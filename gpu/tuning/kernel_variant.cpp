@@ -106,7 +106,8 @@ ChosenVariants default_variants(const DeviceInfo& device, bool compute) {
     variant.stack_words = variant.stack == StackPlace::Shared ? kSharedWords : kRegisterWords;
     if (!device.is_software)
         return ChosenVariants(variant);
-    variant.group_size = compute ? 32 : 64;
+    if (compute) // then threads share a pass of few rays
+        variant.group_size = 32;
     variant.packets = compute;
     variant.refill = compute && device.can_refill();
     variant.branches = false;
