@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // TurnOrder: workers do something one at a time, each when its turn comes round or as they come.
+// Turn (core/system/turn.h) is for threads that have no numbers, and may give up.
 #pragma once
 
 #include <condition_variable>

@@ -16,7 +16,7 @@
 namespace ovc {
 namespace {
 
-/// Lets three workers take so many turns each, with pauses of any length between. Returns their
+/// Lets workers take so many turns each, with pauses of any length between. Returns their
 /// numbers in the order of their turns.
 std::string turns_of(TurnOrder& order, const std::vector<size_t>& counts) {
     std::string taken;

@@ -123,8 +123,7 @@ using OtherCopy = CopyNamed<8>;
 TEST_F(RunContenders, AskSmallCallsForAllRays) {
     enter("one", 0);
     RaySet set{"primary", RayQuery::Nearest, std::vector<Ray>(2 * kSmallCallRays + 1)};
-    workloads = {ray_workload(set), ray_workload(set)};
-    ask_in_small_calls(workloads[1]);
+    workloads = {ray_workload(set), in_small_calls(ray_workload(set))};
     EXPECT_EQ(workloads[1].name, "primary-small");
     const auto calls_for = [&](Workload& workload) {
         calls.clear();

@@ -7,6 +7,7 @@
 #include "core/scene.h"
 #include "host/backend/backend.h"
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -33,7 +34,9 @@ Result<RaySetAnswers> answers_of(const RaySet& set, Backend& backend);
 /// Returns the scene's own camera, or one that frames the whole scene, as `overcast render` does.
 Camera own_or_framing_camera(const Scene& scene, uint32_t width, uint32_t height);
 
-/// Returns three sets, each in the order of pixel_order():
+inline constexpr std::array<const char*, 3> kRaySetNames = {"primary", "shadow", "diffuse"};
+
+/// Returns the sets of these names, each in the order of pixel_order():
 ///   primary   the nearest hit, one ray through the centre of each pixel;
 ///   shadow    occlusion, one ray from each hit pixel to the scene's first light, or to one over
 ///   the

@@ -35,18 +35,20 @@ Result<std::vector<Workload>> workloads_of(const Scene& scene, const Camera& cam
                                            const StopRequest& stop) {
     std::vector<Workload> workloads;
     const auto [width, height] = asked.size;
+    const auto named = [&](const std::string& name) {
+        return std::ranges::find(asked.only, name) != asked.only.end();
+    };
     if (asked.ray_sets) {
         Result<std::vector<RaySet>> sets = make_ray_sets(scene, camera, width, height, reference);
         if (!sets)
             return sets.error();
-        for (RaySet& set : *sets)
+        for (RaySet& set : *sets) {
             workloads.push_back(ray_workload(std::move(set)));
-        for (size_t i = 0; asked.small_calls && i < sets->size(); ++i) {
-            workloads.push_back(workloads[i]);
-            ask_in_small_calls(workloads.back());
+            if (named(workloads.back().name + kSmall))
+                workloads.push_back(in_small_calls(workloads.back()));
         }
     }
-    if (asked.edges) {
+    if (named("edges")) {
         Result<RaySet> edges = make_edge_set(scene, camera, width, height, reference);
         if (!edges)
             return edges.error();
@@ -60,9 +62,7 @@ Result<std::vector<Workload>> workloads_of(const Scene& scene, const Camera& cam
         for (Workload& workload : workloads)
             round_rays(workload);
     if (!asked.only.empty())
-        std::erase_if(workloads, [&](const Workload& workload) {
-            return std::ranges::find(asked.only, workload.name) == asked.only.end();
-        });
+        std::erase_if(workloads, [&](const Workload& workload) { return !named(workload.name); });
     return workloads;
 }
 

@@ -16,13 +16,12 @@ class TerminalLine;
 
 /// The workloads of a bench.
 struct Asked {
-    /// The names of workloads to keep of those asked for below; empty: all of them.
+    /// The names of workloads to keep of those asked for below; empty: all of them. Rays at edges
+    /// and corners ("edges") and small calls ("primary-small" and so on) are asked for here alone.
     std::vector<std::string> only;
     ImageSize size;
     bool ray_sets = true; // primary, shadow, diffuse
     bool frame = true;
-    bool edges = false;                  // rays at edges and corners
-    bool small_calls = false;            // primary-small, and so on
     bool float_rays = false;             // rays in numbers that floats have
     std::vector<uint32_t> primary_sides; // also camera rays of squares of so many pixels a side
 };

@@ -64,12 +64,13 @@ Workload ray_workload(RaySet set) {
             OcclusionTask{std::move(set.rays), std::vector<uint8_t>(count), count}};
 }
 
-void ask_in_small_calls(Workload& workload) {
-    workload.name += "-small";
+Workload in_small_calls(Workload workload) {
+    workload.name += kSmall;
     if (auto* nearest = std::get_if<NearestTask>(&workload.task))
         nearest->call_rays = kSmallCallRays;
     else
         std::get<OcclusionTask>(workload.task).call_rays = kSmallCallRays;
+    return workload;
 }
 
 static void round_rays(std::vector<Ray>& rays) {

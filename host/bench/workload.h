@@ -74,9 +74,9 @@ DistanceError distance_error(std::span<const double> distances, std::span<const 
 Workload ray_workload(RaySet set);
 
 inline constexpr size_t kSmallCallRays = 1024;
-/// Makes the workload ask for so many rays in a call instead of all at once, and tells that in its
-/// name: "primary-small". Not for a frame.
-void ask_in_small_calls(Workload& workload);
+inline constexpr const char* kSmall = "-small"; // behind the name of such a workload
+/// Returns the workload with kSmallCallRays rays in a call instead of all. Not for a frame.
+Workload in_small_calls(Workload workload);
 
 /// Rounds the workload's rays to floats, so that contenders that take floats answer the same rays.
 void round_rays(Workload& workload);

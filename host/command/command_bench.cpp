@@ -122,7 +122,6 @@ Result<Done> bench_contenders(const BenchJob& job, const BenchSurroundings& arou
         bench.scene = source;
         bench.asked.size = job.size;
         bench.asked.only = job.workloads;
-        bench.asked.edges = bench.asked.small_calls = !job.workloads.empty();
         bench.asked.float_rays = job.float_rays;
         bench.repeats = job.repeats;
         bench.contenders = job.contenders;

@@ -38,8 +38,6 @@ const Measurement* find(const BenchResult& r, std::string_view contender,
     return nullptr;
 }
 
-constexpr std::array<const char*, 3> kRaySets = {"primary", "shadow", "diffuse"};
-
 std::span<const double> call_turns(const Measurement& m) {
     return m.seconds;
 }
@@ -50,15 +48,15 @@ template <class Turns>
 std::vector<Bar> against(const BenchResult& r, const std::string& what, std::string_view peer,
                          const PromiseOfSets& promises, const char* part, Turns&& turns) {
     std::vector<Bar> bars;
-    for (size_t i = 0; i < kRaySets.size(); ++i) {
-        Bar bar{fmt::format("{} against {}, {}: {}", part, peer, what, kRaySets[i]),
+    for (size_t i = 0; i < kRaySetNames.size(); ++i) {
+        Bar bar{fmt::format("{} against {}, {}: {}", part, peer, what, kRaySetNames[i]),
                 Better::More,
                 promises[i].at_least,
                 promises[i].aim,
                 {},
                 "times as fast"};
-        const Measurement* const ours = find(r, "certified", kRaySets[i]);
-        if (const Measurement* const theirs = find(r, peer, kRaySets[i]); ours && theirs)
+        const Measurement* const ours = find(r, "certified", kRaySetNames[i]);
+        if (const Measurement* const theirs = find(r, peer, kRaySetNames[i]); ours && theirs)
             bar.take(paired_ratio(turns(*theirs), turns(*ours)));
         if (!bar.measured)
             bar.note = fmt::format("{} did not take part", peer);
@@ -78,6 +76,23 @@ std::vector<double> summed_turns(const BenchResult& r, size_t entrant) {
             sums[i] += m.seconds[i];
     }
     return sums;
+}
+
+/// Returns the line with the certified call seconds a ray of one workload divided by those of
+/// another.
+Bar a_ray(const BenchResult& mesh, const std::string& over, const std::string& under, Bar bar) {
+    bar.note = "times as long, a ray";
+    const auto seconds_of = [&](const std::string& workload) {
+        std::vector<double> each;
+        if (const Measurement* measured = find(mesh, "certified", workload))
+            for (const double seconds : measured->seconds)
+                each.push_back(seconds / double(measured->rays));
+        return each;
+    };
+    const std::vector<double> dividend = seconds_of(over), divisor = seconds_of(under);
+    if (!dividend.empty() && !divisor.empty())
+        bar.take(paired_ratio(dividend, divisor));
+    return bar;
 }
 
 } // namespace
@@ -100,27 +115,6 @@ Bar certify_bar(const BenchResult& mesh) {
     return frame;
 }
 
-namespace {
-
-/// Returns the line with the certified call seconds a ray of one workload divided by those of
-/// another.
-Bar a_ray(const BenchResult& mesh, const std::string& over, const std::string& under, Bar bar) {
-    bar.note = "times as long, a ray";
-    const auto seconds_of = [&](const std::string& workload) {
-        std::vector<double> each;
-        if (const Measurement* measured = find(mesh, "certified", workload))
-            for (const double seconds : measured->seconds)
-                each.push_back(seconds / double(measured->rays));
-        return each;
-    };
-    const std::vector<double> dividend = seconds_of(over), divisor = seconds_of(under);
-    if (!dividend.empty() && !divisor.empty())
-        bar.take(paired_ratio(dividend, divisor));
-    return bar;
-}
-
-} // namespace
-
 Bar edges_bar(const BenchResult& mesh) {
     return a_ray(
         mesh, "edges", "primary",
@@ -129,9 +123,9 @@ Bar edges_bar(const BenchResult& mesh) {
 
 std::vector<Bar> small_calls_bars(const BenchResult& mesh) {
     std::vector<Bar> bars;
-    for (const std::string set : {"primary", "shadow", "diffuse"})
+    for (const std::string set : kRaySetNames)
         bars.push_back(
-            a_ray(mesh, set + "-small", set,
+            a_ray(mesh, set + kSmall, set,
                   {fmt::format("calls of {} rays against one, mesh: {}", kSmallCallRays, set),
                    Better::Less,
                    1.3,

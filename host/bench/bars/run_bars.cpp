@@ -182,7 +182,7 @@ private:
 
     /// Rays that are aimed at sides and corners, which exact arithmetic decides.
     Result<Done> edges() {
-        const Asked asked{.only = {"primary", "edges"}, .size = small_, .edges = true};
+        const Asked asked{.only = {"primary", "edges"}, .size = small_};
         const Result<const BenchResult*> r = bench(job_.mesh, asked, {kCertifiedBar}, job_.repeats);
         if (!r)
             return r.error();
@@ -192,7 +192,9 @@ private:
 
     /// The same rays in many small calls and in one.
     Result<Done> small_calls() {
-        const Asked asked{.size = large_, .frame = false, .small_calls = true};
+        Asked asked{.size = large_};
+        for (const std::string set : kRaySetNames)
+            asked.only.insert(asked.only.end(), {set, set + kSmall});
         const Result<const BenchResult*> r = bench(job_.mesh, asked, {kCertifiedBar}, job_.repeats);
         if (!r)
             return r.error();
