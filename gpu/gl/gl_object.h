@@ -9,8 +9,10 @@
 #include "gpu/gl/texel_reads.h"
 
 #include <cassert>
+#include <cstddef>
 #include <cstdint>
 #include <new>
+#include <span>
 #include <string_view>
 #include <utility>
 
@@ -94,6 +96,14 @@ inline void delete_program(GLuint id) {
 using Shader = Handle<delete_shader>;
 using Program = Handle<delete_program>;
 
+/// Shows whole pages of this process to the driver as the storage of a buffer, which reads them and
+/// writes to them in place. They outlive the buffer's use.
+inline void show_host_pages(GLuint buffer, const void* pages, uint64_t bytes) {
+    glBindBuffer(GL_EXTERNAL_VIRTUAL_MEMORY_BUFFER_AMD, buffer);
+    glBufferData(GL_EXTERNAL_VIRTUAL_MEMORY_BUFFER_AMD, GLsizeiptr(bytes), pages, GL_DYNAMIC_DRAW);
+    glBindBuffer(GL_EXTERNAL_VIRTUAL_MEMORY_BUFFER_AMD, 0);
+}
+
 /// Storage of a fixed size, filled by sub-buffer updates or through a map. If the ledger says so,
 /// it consists of the process's own pages, which the driver uses in place; the system provides each
 /// page at its first use. The pages go with the buffer, so no pass may be under way when it is
@@ -106,7 +116,7 @@ public:
             return;
         if (!ledger.takes_host_pages)
             allocate();
-        else if (!show_host_pages())
+        else if (!make_host_pages())
             ledger.refused = true;
         glObjectLabel(GL_BUFFER, id(), GLsizei(label.size()), label.data());
     }
@@ -119,22 +129,32 @@ private:
                              GL_DYNAMIC_STORAGE_BIT | GL_MAP_WRITE_BIT);
     }
     /// Returns false if the system has no pages left.
-    bool show_host_pages() {
+    bool make_host_pages() {
         try {
             host_pages_ = map_pages(bytes());
         } catch (const std::bad_alloc&) {
             return false;
         }
-        glBindBuffer(GL_EXTERNAL_VIRTUAL_MEMORY_BUFFER_AMD, id());
-        glBufferData(GL_EXTERNAL_VIRTUAL_MEMORY_BUFFER_AMD, GLsizeiptr(bytes()), host_pages_.get(),
-                     GL_DYNAMIC_DRAW);
-        glBindBuffer(GL_EXTERNAL_VIRTUAL_MEMORY_BUFFER_AMD, 0);
+        show_host_pages(id(), host_pages_.get(), bytes());
         return true;
     }
 
     SystemPages host_pages_; // declared first, so that the pages outlive the name
     Handle<delete_buffer> handle_;
     Entry entry_;
+};
+
+/// Pages of this process, which somebody else owns, as a buffer that kernels read. Only where a
+/// ledger says that buffers consist of such pages.
+class HostBuffer {
+public:
+    explicit HostBuffer(std::span<const std::byte> pages) : handle_(create_buffer()) {
+        show_host_pages(id(), pages.data(), pages.size());
+    }
+    GLuint id() const { return handle_.id(); }
+
+private:
+    Handle<delete_buffer> handle_;
 };
 
 /// A two-dimensional texture of one level, unfiltered.

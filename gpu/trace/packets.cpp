@@ -6,7 +6,8 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cmath>
+#include <cstddef>
+#include <cstring>
 
 namespace ovc {
 namespace {
@@ -32,16 +33,26 @@ bool near(const vec3& a, const vec3& b) {
     return std::max({apart.x, apart.y, apart.z}) < kNear;
 }
 
+/// Four floats, and truth (-1) or not (0) of each.
+typedef float Four __attribute__((vector_size(16)));
+typedef int Mask __attribute__((vector_size(16)));
+
+/// Returns the direction; the fourth element may be anything.
+Four direction(const LocalRay& ray) {
+    static_assert(offsetof(LocalRay, dir) + sizeof(Four) <= sizeof(LocalRay));
+    Four four;
+    std::memcpy(&four, &ray.dir, sizeof(four));
+    return four;
+}
+
 /// Whether both rays go into the same octant and farthest along the same axis, as the kernel sees
 /// it (shaders/triangle.glsl): -0 is not negative, and the largest component is 1 or -1.
 bool go_alike(const LocalRay& a, const LocalRay& b) {
-    const auto other_sign = [&](int axis) { return (a.dir[axis] < 0) ^ (b.dir[axis] < 0); };
-    const auto other_axis = [&](int axis) {
-        return (std::abs(a.dir[axis]) == 1) ^ (std::abs(b.dir[axis]) == 1);
-    };
-    const int differ =
-        other_sign(0) | other_sign(1) | other_sign(2) | other_axis(1) | other_axis(2);
-    return differ == 0; // computed without branches
+    const Four x = direction(a), y = direction(b);
+    const Mask other_sign = (x < 0) ^ (y < 0);
+    const Mask other_axis = ((x == 1) | (x == -1)) ^ ((y == 1) | (y == -1));
+    const Mask differ = other_sign | (other_axis & Mask{0, -1, -1, 0});
+    return (differ[0] | differ[1] | differ[2]) == 0;
 }
 
 /// Returns the second rays of all packets whose two rays do not go alike.
@@ -67,7 +78,7 @@ std::vector<uint32_t> apart(std::span<const Sent> rays) {
 }
 
 template <class Sent>
-std::optional<std::vector<Parted>> part(std::vector<Sent>& slots, size_t rays, size_t most) {
+std::optional<std::vector<Parted>> part(PagedVector<Sent>& slots, size_t rays, size_t most) {
     static_assert(kPacketRays == 2);
     assert(rays <= slots.size() && slots.size() <= most);
     const std::vector<uint32_t> numbers = apart(std::span<const Sent>(slots).first(rays));
@@ -113,11 +124,11 @@ bool coherent(std::span<const LocalRay> rays) {
     return coherent(rays.size(), [&](size_t i) { return rays[i]; });
 }
 
-std::optional<std::vector<Parted>> part_packets(std::vector<LocalRay>& slots, size_t rays,
+std::optional<std::vector<Parted>> part_packets(PagedVector<LocalRay>& slots, size_t rays,
                                                 size_t most) {
     return part(slots, rays, most);
 }
-std::optional<std::vector<Parted>> part_packets(std::vector<ResumedRay>& slots, size_t rays,
+std::optional<std::vector<Parted>> part_packets(PagedVector<ResumedRay>& slots, size_t rays,
                                                 size_t most) {
     return part(slots, rays, most);
 }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "core/function_ref.h"
+#include "core/system/system_pages.h"
 #include "gpu/trace/local_ray.h"
 
 #include <cstddef>
@@ -32,9 +33,9 @@ struct Parted {
 /// to as many whole blocks as that takes, at most `most` slots. A few rays that find no room may
 /// stay; the kernel then leaves them undecided. Returns the rays that were moved, or nothing, with
 /// none moved, if more than a few would stay.
-std::optional<std::vector<Parted>> part_packets(std::vector<LocalRay>& slots, size_t rays,
+std::optional<std::vector<Parted>> part_packets(PagedVector<LocalRay>& slots, size_t rays,
                                                 size_t most);
-std::optional<std::vector<Parted>> part_packets(std::vector<ResumedRay>& slots, size_t rays,
+std::optional<std::vector<Parted>> part_packets(PagedVector<ResumedRay>& slots, size_t rays,
                                                 size_t most);
 
 } // namespace ovc

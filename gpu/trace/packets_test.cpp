@@ -35,8 +35,8 @@ TEST(Packets, NeighboursThatGoTheSameWayAreCoherent) {
 
 /// Returns rays of which every third goes to the other side, every fifth goes farthest along
 /// another axis, and some are OVC_NO_RAY.
-std::vector<LocalRay> two_sided(size_t rays) {
-    std::vector<LocalRay> slots(whole_blocks(rays), {vec3(0), OVC_NO_RAY, vec3(1), 0});
+PagedVector<LocalRay> two_sided(size_t rays) {
+    PagedVector<LocalRay> slots(whole_blocks(rays), {vec3(0), OVC_NO_RAY, vec3(1), 0});
     for (size_t i = 0; i < rays; ++i) {
         const double side = i % 3 == 0 ? -0.1 : 0.1;
         slots[i] = toward(i % 5 == 0 ? dvec3(side, -1, 0.9) : dvec3(side, -0.9, 1));
@@ -48,8 +48,8 @@ std::vector<LocalRay> two_sided(size_t rays) {
 
 TEST(Packets, GoAlikeAndLoseNoRay) {
     for (const size_t rays : {1, 2, 999, 1000, 4096, 100001}) {
-        const std::vector<LocalRay> before = two_sided(rays);
-        std::vector<LocalRay> slots = before;
+        const PagedVector<LocalRay> before = two_sided(rays);
+        PagedVector<LocalRay> slots = before;
         const auto parted = part_packets(slots, rays, 4 * before.size());
         ASSERT_TRUE(parted);
         EXPECT_EQ(parted->empty(), rays < 5);
@@ -76,15 +76,15 @@ TEST(Packets, GoAlikeAndLoseNoRay) {
 }
 
 TEST(Packets, StayAsTheyAreWhereTheRestFindsNoRoom) {
-    const std::vector<LocalRay> before = two_sided(8192);
-    std::vector<LocalRay> slots = before;
+    const PagedVector<LocalRay> before = two_sided(8192);
+    PagedVector<LocalRay> slots = before;
     EXPECT_FALSE(part_packets(slots, 8192, 8192));
     EXPECT_FALSE(part_packets(slots, 8192, 8192 + 256));
     ASSERT_EQ(slots.size(), before.size());
     for (size_t i = 0; i < slots.size(); ++i)
         ASSERT_EQ(slots[i].t_end, before[i].t_end);
 
-    std::vector<LocalRay> few(8192, toward({0.1, 0.1, 1}));
+    PagedVector<LocalRay> few(8192, toward({0.1, 0.1, 1}));
     for (const size_t i : {1, 101, 201})
         few[i].dir.x = -0.1f;
     const auto parted = part_packets(few, 8192, 8192);
@@ -94,7 +94,7 @@ TEST(Packets, StayAsTheyAreWhereTheRestFindsNoRoom) {
 }
 
 TEST(Packets, OfRaysThatWaitedKeepTheirLinks) {
-    std::vector<ResumedRay> slots(256);
+    PagedVector<ResumedRay> slots(256);
     for (size_t i = 0; i < slots.size(); ++i)
         slots[i] = {toward({i == 11 ? -1.0 : 1.0, 0, 0}), uint32_t(i), {}};
     const auto parted = part_packets(slots, 20, 512);

@@ -28,7 +28,9 @@ struct PassSlot {
     const uint32_t max_rays;  // of a pass
     const uint32_t max_slots; // the same with those that packets part
     gl::Buffer ray_buffer;
-    gl::BufferTexture rays;
+    /// The rays of the pass that was sent last, where a software renderer reads them in place.
+    std::optional<gl::HostBuffer> rays_in_place;
+    gl::BufferTexture rays;             // of either
     std::optional<AnswerPixels> pixels; // of the fragment kernel
     std::optional<AnswerWords> words;   // of the compute kernel
     /// Memory of this process that the compute kernel writes candidates' names to, as to the places

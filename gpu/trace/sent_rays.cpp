@@ -117,6 +117,12 @@ size_t SentRays::put(size_t at, const RayStates& states, uint32_t which) {
                           (states.asks[lane] & OVC_RAY_ANY_HIT);
         to_frame(frame_, states.rays, words.data(), local);
     }
+    // What most calls are made of: eight rays as they are.
+    auto* const rows = std::get_if<PagedVector<LocalRay>>(&rays_);
+    if (rows && in_lanes && !form_.keeps_times && which == RayLanes::first(RayLanes::kCount)) {
+        std::memcpy(static_cast<void*>(&(*rows)[at]), local.rows, sizeof(local.rows));
+        return RayLanes::kCount;
+    }
     size_t i = at;
     const auto put_one = [&](auto& all, int lane) {
         const uint32_t skip = states.skip[size_t(lane)], asks = states.asks[size_t(lane)];
@@ -176,12 +182,12 @@ void SentRays::close_holes(size_t block_rays, std::span<const size_t> counts) {
 
 /// Returns ray i in the frame of the scene or of the top-level tree.
 LocalRay SentRays::local_ray_of(size_t i) const {
-    if (const auto* local = std::get_if<std::vector<LocalRay>>(&rays_))
+    if (const auto* local = std::get_if<PagedVector<LocalRay>>(&rays_))
         return (*local)[i];
-    if (const auto* resumed = std::get_if<std::vector<ResumedRay>>(&rays_))
+    if (const auto* resumed = std::get_if<PagedVector<ResumedRay>>(&rays_))
         return (*resumed)[i].ray;
     LocalTime unused;
-    return local_ray(*form_.scene, std::get<std::vector<RayState>>(rays_)[i].ray, OVC_NO_TRIANGLE,
+    return local_ray(*form_.scene, std::get<PagedVector<RayState>>(rays_)[i].ray, OVC_NO_TRIANGLE,
                      false, unused);
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "core/lanes/ray_lanes.h"
+#include "core/system/system_pages.h"
 #include "gpu/trace/answers.h"
 #include "gpu/trace/local_ray.h"
 #include "gpu/trace/packets.h"
@@ -107,7 +108,7 @@ private:
     size_t size_ = 0;
     bool all_any_hit_ = false;
     using Rays =
-        std::variant<std::vector<LocalRay>, std::vector<ResumedRay>, std::vector<RayState>>;
+        std::variant<PagedVector<LocalRay>, PagedVector<ResumedRay>, PagedVector<RayState>>;
     Rays rays_; // in whole blocks
     std::vector<LocalTime> times_;
     Rays other_rays_; // to which close_holes() copies them

@@ -134,9 +134,8 @@ Result<Done> Tracer::set_up() {
         return allocated;
     if (portal_buffer_)
         portals_.show(*portal_buffer_, GL_RGBA32UI, 0, portal_buffer_->bytes());
-    for (PassSlot& slot : slots_) {
+    for (PassSlot& slot : slots_)
         slot.rays.show(slot.ray_buffer, GL_RGBA32UI, 0, slot.ray_buffer.bytes());
-    }
     pool_.show();
     upload_top_level();
     if (active_buffer_) {
@@ -378,6 +377,16 @@ void Tracer::begin_to_compile_both(RayKind kind, const ShaderConfig& config) {
     kernels_.begin(shader_config(kind, options_.variants[kind]));
 }
 
+/// Brings the rays to the kernel. Each time, because a kernel may write names in the places of rays
+/// that were copied. In place only where a pass is over when launch() returns.
+void Tracer::show_rays(PassSlot& slot) {
+    const std::span<const std::byte> rays = slot.sent->bytes();
+    if (!device_.takes_host_pages || device_.passes_in_flight > 1)
+        return uploads_.copy(rays, slot.ray_buffer);
+    slot.rays_in_place.emplace(rays);
+    slot.rays.show(slot.rays_in_place->id(), GL_RGBA32UI, 0, rays.size());
+}
+
 Result<Done> Tracer::launch(PassSlot& slot) {
     ShaderConfig config = shader_config(slot.kind, slot.variant);
     config.packet = slot.packets ? kPacketRays : 1; // not where too many rays had to be parted
@@ -386,8 +395,7 @@ Result<Done> Tracer::launch(PassSlot& slot) {
     const Result<GLuint> program = kernels_.program(config);
     if (!program)
         return program.error();
-    // Each time, because a kernel may write names in the places of rays.
-    uploads_.copy(slot.sent->bytes(), slot.ray_buffer);
+    show_rays(slot);
 
     glPushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, 0, -1, "pass");
     glUseProgram(*program);

@@ -169,6 +169,7 @@ private:
     uint32_t stack_words(const KernelVariant& variant) const;
     StackPlace stack_place(const KernelVariant& variant, uint32_t words) const;
     void begin_to_compile_both(RayKind kind, const ShaderConfig& config);
+    void show_rays(PassSlot& slot);
     Result<Done> launch(PassSlot& slot);
     Result<Done> collect(PassSlot& slot, Answers& answers);
     void read(PassSlot& slot, Answers& answers);

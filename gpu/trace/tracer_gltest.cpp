@@ -55,12 +55,16 @@ protected:
         std::vector<Answer> answers(rays.size());
         gl->run([&](GlState&) {
             SentRays rays_sent = send(tracer->form(), states);
+            const auto was_sent = rays_sent.bytes();
+            const std::vector<std::byte> before(was_sent.begin(), was_sent.end());
             Answers& all = traced.emplace_back();
             const Result<Done> done = tracer->trace(rays_sent, all);
             ASSERT_TRUE(done) << done.error().message;
             for (size_t i = 0; i < answers.size(); ++i)
                 answers[i] = all[i];
             EXPECT_GT(tracer->kernel_seconds(), 0);
+            rays_sent.unpart();
+            EXPECT_TRUE(std::ranges::equal(rays_sent.bytes(), before)) << "a kernel wrote to rays";
         });
         return answers;
     }

@@ -50,8 +50,8 @@ struct PooledScene {
     }
 
     /// Returns the rays in the frame that all pages share.
-    std::vector<LocalRay> local_rays(std::span<const Ray> rays, bool any_hit) const {
-        std::vector<LocalRay> local;
+    PagedVector<LocalRay> local_rays(std::span<const Ray> rays, bool any_hit) const {
+        PagedVector<LocalRay> local;
         LocalTime time;
         const Leaf scene = scene_leaf(level1.bounds);
         for (const Ray& ray : rays)

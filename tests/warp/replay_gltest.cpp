@@ -44,7 +44,7 @@ protected:
                                     .stack = StackPlace::Registers,
                                     .stack_words = 32};
         const Answers answers = trace(scene, variant, rays, how.any_hit);
-        std::vector<LocalRay> slots = scene.local_rays(rays, how.any_hit);
+        PagedVector<LocalRay> slots = scene.local_rays(rays, how.any_hit);
         LocalRay none{};
         none.t_end = OVC_NO_RAY;
         slots.resize(whole_blocks(slots.size()), none);

@@ -52,13 +52,13 @@ void print_row(const std::string& name, const WarpVariant& variant, std::span<co
 
 void print_set(const PooledScene& scene, const RaySet& set, std::span<const Gpu> gpus) {
     const bool any_hit = set.query == RayQuery::Occlusion;
-    const std::vector<LocalRay> rays = scene.local_rays(set.rays, any_hit);
+    const PagedVector<LocalRay> rays = scene.local_rays(set.rays, any_hit);
     const size_t block = 256;
     LocalRay none{};
     none.t_end = OVC_NO_RAY;
-    std::vector<LocalRay> slots = rays;
+    PagedVector<LocalRay> slots = rays;
     slots.resize((rays.size() + block - 1) / block * block, none);
-    std::vector<LocalRay> pairs = slots;
+    PagedVector<LocalRay> pairs = slots;
     const bool packs = coherent(rays) && part_packets(pairs, rays.size(), 2 * slots.size());
     for (const bool branches : {true, false})
         for (const bool packets : {false, true}) {
