@@ -63,6 +63,12 @@ public:
         return &room;
     }
 
+    /// Begins to fetch ray i, which is to be read soon.
+    void fetch(size_t i) const {
+        assert(i < size_);
+        __builtin_prefetch(floats_ ? static_cast<const void*>(floats_ + i) : doubles_ + i);
+    }
+
     /// Returns the rays themselves where they are doubles; else a copy in `room`, empty before.
     std::span<const Ray> in_double(std::vector<Ray>& room) const {
         if (!floats_)

@@ -102,10 +102,13 @@ private:
         const std::span<uint32_t> rays = std::span(batch.rays).subspan(first, count);
         std::iota(rays.begin(), rays.end(), uint32_t(part + first));
         size_t asked = 0;
-        in_lanes(rays, [&](std::span<const uint32_t> some, size_t) {
-            RayStates states = resolver_.states(some);
+        resolver_.in_lanes(rays, [&](RayStates& states, std::span<const uint32_t> some, size_t j) {
             const uint32_t begins = resolver_.begins(states, some);
             resolver_.send(batch.sent, first + asked, states, some, begins);
+            if (asked == j && begins == RayLanes::first(some.size())) {
+                asked += some.size(); // they are in their places
+                return;
+            }
             for (size_t lane = 0; lane < some.size(); ++lane)
                 if (begins >> lane & 1)
                     rays[asked++] = some[lane];

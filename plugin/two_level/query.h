@@ -32,10 +32,8 @@ struct NearestQuery {
                 places.empty() ? places : places.subspan(first, count),
                 has_own_places};
     }
-    void count_pass(size_t i) const {
-        if (!passes.empty())
-            ++passes[i];
-    }
+    bool counts_passes() const { return !passes.empty(); }
+    void count_pass(size_t i) const { ++passes[i]; }
     void flag(size_t i) const {
         if (!flagged.empty())
             flagged[i] = 1;
@@ -62,6 +60,7 @@ struct OcclusionQuery {
         return {rays.subspan(first, count), without.subspan(first, count),
                 results.subspan(first, count)};
     }
+    bool counts_passes() const { return false; }
     void count_pass(size_t) const {}
     void flag(size_t) const {}
     void set_miss(size_t i) const { results[i] = 0; }

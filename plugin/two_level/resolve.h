@@ -28,13 +28,6 @@ namespace ovc {
 inline constexpr Hit kSomeHit{0, 0, 0, {0, 0}}; // of an occlusion ray, whose triangle is not kept
 inline constexpr size_t kRaysPerTask = 256;     // in parallel loops over rays that are traced
 
-/// Calls body(some, first) for rays by as many as there are lanes; first: the place of the first.
-template <class Body>
-void in_lanes(std::span<const uint32_t> rays, Body&& body) {
-    for (size_t first = 0; first < rays.size(); first += RayLanes::kCount)
-        body(rays.subspan(first, std::min<size_t>(RayLanes::kCount, rays.size() - first)), first);
-}
-
 /// Whether an answer in certified precision tells which triangles the ray may hit.
 inline bool names_candidates(const Answer& answer) {
     return answer.prim != OVC_FLAGGED && answer.prim != OVC_CAPPED;
@@ -88,22 +81,20 @@ public:
     /// Replaces the query where its arrays have moved or have more rays than before.
     void show(const Query& query) { query_ = query; }
 
-    /// Returns the states in which these rays, at most RayLanes::kCount, set out.
-    RayStates states(std::span<const uint32_t> rays) const {
-        constexpr uint32_t asks = Query::kAnyHit ? OVC_RAY_ANY_HIT : 0;
-        RayStates states;
-        RayRoom<RayLanes::kCount> room;
-        states.set(rays.size(), asks,
-                   [&](size_t lane) { return query_.rays.address(rays[lane], room.rays[lane]); });
-        if (query_.without.empty())
-            return states;
-        for (size_t lane = 0; lane < rays.size(); ++lane) {
-            const Ray ray = query_.rays[rays[lane]];
-            const Exclusion without = exclusion(rays[lane]);
-            states.rays.from[lane] = PreparedRay::behind(ray, without.after).t_min;
-            states.skip[lane] = scene_.number_to_skip(ray, without);
+    /// Calls body(states, some, first) for these rays, by as many as there are lanes; states: those
+    /// in which they set out; first: the place of the first.
+    template <class Body>
+    void in_lanes(std::span<const uint32_t> rays, Body&& body) const {
+        constexpr size_t kCount = RayLanes::kCount;
+        constexpr size_t kRaysAhead = 8 * kCount; // rays between fetching one and reading it
+        for (size_t first = 0; first < rays.size(); first += kCount) {
+            const size_t ahead = first + kRaysAhead, end = std::min(ahead + kCount, rays.size());
+            for (size_t j = ahead; j < end; ++j)
+                query_.rays.fetch(rays[j]);
+            const auto some = rays.subspan(first, std::min(kCount, rays.size() - first));
+            RayStates states = states_of(some);
+            body(states, some, first);
         }
-        return states;
     }
 
     /// Returns a bit for each of these rays, of which these are the states, about which the kernel
@@ -136,9 +127,10 @@ public:
     /// on; returns how many.
     size_t send(SentRays& sent, size_t at, const RayStates& states, std::span<const uint32_t> rays,
                 uint32_t which) const {
-        for (size_t lane = 0; lane < rays.size(); ++lane)
-            if (which >> lane & 1)
-                query_.count_pass(rays[lane]);
+        if (query_.counts_passes())
+            for (size_t lane = 0; lane < rays.size(); ++lane)
+                if (which >> lane & 1)
+                    query_.count_pass(rays[lane]);
         return sent.put(at, states, which);
     }
 
@@ -238,6 +230,24 @@ private:
         uint32_t i;
         TriangleId near;
     };
+
+    /// Returns the states in which these rays, at most RayLanes::kCount, set out.
+    RayStates states_of(std::span<const uint32_t> rays) const {
+        constexpr uint32_t asks = Query::kAnyHit ? OVC_RAY_ANY_HIT : 0;
+        RayStates states;
+        RayRoom<RayLanes::kCount> room;
+        states.set(rays.size(), asks,
+                   [&](size_t lane) { return query_.rays.address(rays[lane], room.rays[lane]); });
+        if (query_.without.empty())
+            return states;
+        for (size_t lane = 0; lane < rays.size(); ++lane) {
+            const Ray ray = query_.rays[rays[lane]];
+            const Exclusion without = exclusion(rays[lane]);
+            states.rays.from[lane] = PreparedRay::behind(ray, without.after).t_min;
+            states.skip[lane] = scene_.number_to_skip(ray, without);
+        }
+        return states;
+    }
 
     Exclusion exclusion(uint32_t i) const {
         Exclusion without = query_.without[i];

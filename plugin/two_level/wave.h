@@ -89,8 +89,8 @@ public:
         ready_.erase(ready_.begin(), ready_.begin() + ptrdiff_t(count));
         loaded_ += count;
         parallel_for(count, kRaysPerTask, [&](size_t from, size_t to) {
-            in_lanes(rays.subspan(from, to - from), [&](std::span<const uint32_t> some, size_t j) {
-                RayStates states = resolver_.states(some);
+            resolver_.in_lanes(rays.subspan(from, to - from), [&](RayStates& states, auto some,
+                                                                  size_t j) {
                 for (size_t lane = 0; lane < some.size(); ++lane) {
                     const State& at = states_[some[lane]];
                     double& t_max = states.rays.t_max[lane];
@@ -141,8 +141,7 @@ private:
     }
 
     void start_some(std::span<const uint32_t> rays) {
-        in_lanes(rays, [&](std::span<const uint32_t> some, size_t) {
-            RayStates states = resolver_.states(some);
+        resolver_.in_lanes(rays, [&](RayStates& states, std::span<const uint32_t> some, size_t) {
             const uint32_t begins = resolver_.begins(states, some);
             for (size_t lane = 0; lane < some.size(); ++lane)
                 states_[some[lane]] =
