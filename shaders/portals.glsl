@@ -29,8 +29,8 @@ void push_mark(inout Descent d) {
     d.top = word_of(0, 4);
 }
 
-// Takes the ray in the frame of the top-level tree as that to come back to.
-void set_scene(inout Packet packet, LocalRay local) {
+// Keeps the ray as it is in the frame of the top-level tree, for when it comes back there.
+void keep_scene(inout Packet packet, LocalRay local) {
     packet.place.grid = packet.grid[0];
     packet.place.backward = packet.backward;
     packet.place.end = local.t_end;
@@ -47,8 +47,8 @@ void set_local_ray(inout Packet packet, LocalRay local, Tree tree) {
 }
 
 // Brings a ray into another frame: one that sets out into that of the top-level tree, whose portal
-// is the first, another one into that behind the portal that it has come to. A ray for which there
-// is nothing behind the portal goes on behind it.
+// is the first, and another one into that behind the portal that it has come to. If nothing behind
+// that portal can be nearer than what the ray has found, it stays in the top-level tree.
 void change_frame(int ray, bool sets_out, inout Descent d, inout Packet packet,
                   inout Found found) {
     Portal portal = portal_at(sets_out ? 0 : -d.unit);
@@ -72,7 +72,7 @@ void change_frame(int ray, bool sets_out, inout Descent d, inout Packet packet,
         measure(packet.place);
         set_local_ray(packet, local, tree);
         if (sets_out)
-            set_scene(packet, local);
+            keep_scene(packet, local);
         else
             push_mark(d);
         d.unit = tree.start.x;

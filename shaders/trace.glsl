@@ -9,8 +9,8 @@ void give_names(int first, Found found[OVC_PACKET], int counts[OVC_PACKET]);
 #endif
 
 #if OVC_PORTALS
-// Takes what the ray asks for.
-void take_question(int ray, inout Packet packet) {
+// Takes what a ray says besides where it goes: what it skips, if any hit will do, where it goes on.
+void take_asks(int ray, inout Packet packet) {
     uvec4 asks = ray_texel(ray * OVC_RAY_TEXELS + 4);
     packet.skip[0] = asks.z;
     packet.any_hit[0] = OVC_ANY_HIT != 0 || (asks.w & OVC_RAY_ANY_HIT) != 0u;
@@ -60,7 +60,7 @@ void go_on(int ray, bool sets_out, Tree tree, inout Descent d, inout Packet pack
            inout Found found[OVC_PACKET]) {
 #if OVC_PORTALS
     if (sets_out)
-        take_question(ray, packet);
+        take_asks(ray, packet);
     if (sets_out || is_at_portal(d, found[0]))
         change_frame(ray, sets_out, d, packet, found[0]);
 #else
