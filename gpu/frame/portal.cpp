@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <bit>
 #include <cassert>
-#include <cmath>
 
 namespace ovc {
 
@@ -24,28 +23,13 @@ PreparedRay Portal::local_ray(const PreparedRay& p) const {
     return local;
 }
 
-/// Returns the least box around this one whose corners are floats.
-static Box in_floats(const Box& box) {
-    const auto rounded = [](double x, float towards) {
-        const float nearest = float(x);
-        const bool is_inside = towards < 0 ? nearest > x : nearest < x;
-        return double(is_inside ? std::nextafter(nearest, towards) : nearest);
-    };
-    Box floats;
-    for (int axis = 0; axis < 3; ++axis) {
-        floats.lo[axis] = rounded(box.lo[axis], -INFINITY);
-        floats.hi[axis] = rounded(box.hi[axis], INFINITY);
-    }
-    return floats;
-}
-
 Portal portal_into(const Frame& frame, const Box& box, const Transform* transform) {
     Portal portal;
     portal.origin = transform ? (*transform)(frame.origin) : frame.origin;
     portal.rows = *inverse_matrix(or_identity(transform));
     for (dvec3& row : portal.rows)
         row *= frame.scale;
-    portal.box = in_floats({frame.to_local(box.lo), frame.to_local(box.hi)});
+    portal.box = {frame.to_local(box.lo), frame.to_local(box.hi)};
     portal.bounds = placed_box(box, transform);
     return portal;
 }
@@ -54,9 +38,10 @@ std::vector<uvec4> pack_portals(std::span<const Portal> portals) {
     std::vector<uvec4> texels;
     texels.reserve(portals.size() * OVC_PORTAL_TEXELS);
     for (const Portal& portal : portals) {
-        std::array<double, 12> numbers{};
+        std::array<double, 18> numbers{};
         auto next = numbers.begin();
-        for (const dvec3& v : {portal.origin, portal.rows[0], portal.rows[1], portal.rows[2]})
+        for (const dvec3& v : {portal.origin, portal.rows[0], portal.rows[1], portal.rows[2],
+                               portal.box.lo, portal.box.hi})
             for (int axis = 0; axis < 3; ++axis)
                 *next++ = v[axis];
         for (size_t i = 0; i < numbers.size(); i += 2) {
@@ -64,10 +49,7 @@ std::vector<uvec4> pack_portals(std::span<const Portal> portals) {
             const auto b = std::bit_cast<uint64_t>(numbers[i + 1]);
             texels.emplace_back(uint32_t(a), uint32_t(a >> 32), uint32_t(b), uint32_t(b >> 32));
         }
-        const auto bits = [](double x) { return std::bit_cast<uint32_t>(float(x)); };
-        const auto& [lo, hi] = portal.box;
-        texels.emplace_back(bits(lo.x), bits(lo.y), bits(lo.z), bits(hi.x));
-        texels.emplace_back(bits(hi.y), bits(hi.z), portal.tree, portal.first_number);
+        texels.emplace_back(portal.tree, portal.first_number, 0, 0);
     }
     return texels;
 }
