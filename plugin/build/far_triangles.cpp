@@ -41,7 +41,9 @@ FarTriangles far_triangles_of(const BuiltScene& scene) {
         return {};
     FarTriangles far;
     std::vector<NumberedTriangle> triangles;
-    size_t left = scene.shared.size(); // parts of the scene
+    // The parts that the top-level tree is left with. A mesh without hittable triangles is none.
+    auto left = std::ranges::count_if(
+        scene.shared, [](const SharedMesh& mesh) { return !mesh.scene.pages.empty(); });
     for (const LeafRange& part : parts_of(scene.level1)) {
         std::vector<NumberedTriangle> own;
         if (part.count == 1)

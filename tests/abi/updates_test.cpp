@@ -256,6 +256,21 @@ TEST_F(Updates, OfAMeshWithoutAreaLeaveNothingToHit) {
         EXPECT_FALSE(hit.is_hit());
 }
 
+/// The mesh has a tree of its own, with nothing in it, and the host meets the floor's triangles.
+TEST_F(Updates, OfAMeshWithoutAreaLeaveTheFloor) {
+    World w = world();
+    w.add(std::vector<vec3>{{-9, 0, -9}, {9, 0, -9}, {0, 0, 9}}, dvec3(0), nullptr, 0);
+    const uint32_t mesh =
+        w.add(std::vector<vec3>{vec3(0), vec3(0), vec3(1)}, dvec3(0), nullptr, OVC_MESH_MOVES);
+    w.commit();
+    const Matrix m = shift({0, 1, 0});
+    w.move(mesh, &m);
+    w.commit();
+    expect_brute_force(w,
+                       {{dvec3(0, 1, 0), 0, dvec3(0, -1, 0)}, {dvec3(0, 1, 0), 0, dvec3(0, 1, 0)}},
+                       2, /* most_hit= */ false);
+}
+
 /// The frame of what is left is not that of the scene.
 TEST_F(Updates, LeaveOnePartOfAWideScene) {
     config.leaf_triangles = 15;
