@@ -96,8 +96,8 @@ inline void delete_program(GLuint id) {
 using Shader = Handle<delete_shader>;
 using Program = Handle<delete_program>;
 
-/// Shows whole pages of this process to the driver as the storage of a buffer, which reads them and
-/// writes to them in place. They outlive the buffer's use.
+/// Makes pages of this process the storage of a buffer. The driver reads and writes them in place,
+/// so they must outlive the buffer's use. pages: the address of the first.
 inline void show_host_pages(GLuint buffer, const void* pages, uint64_t bytes) {
     glBindBuffer(GL_EXTERNAL_VIRTUAL_MEMORY_BUFFER_AMD, buffer);
     glBufferData(GL_EXTERNAL_VIRTUAL_MEMORY_BUFFER_AMD, GLsizeiptr(bytes), pages, GL_DYNAMIC_DRAW);
