@@ -74,8 +74,12 @@ const SharedMesh* BuiltScene::shared_mesh_of(uint32_t chunk) const {
 
 TriangleId BuiltScene::next_duplicate(TriangleId id, TriangleId after) const {
     const SharedMesh* mesh = shared_mesh_of(id.mesh);
+    auto others = mesh ? mesh->scene.duplicates.of(mesh->local(id)) : duplicates.of(id);
+    if (mesh && mesh->has_lines && others.empty()) { // the triangle may be one that was on a line
+        mesh = nullptr;
+        others = duplicates.of(id);
+    }
     const uint32_t place = mesh ? mesh->place_of(id.mesh) : 0;
-    const auto others = mesh ? mesh->scene.duplicates.of(mesh->local(id)) : duplicates.of(id);
     const auto of_pair = [&](const Duplicates::Pair& pair) {
         return TriangleId{place + pair.other.mesh, pair.other.prim};
     };
