@@ -61,9 +61,9 @@
 //
 // portal  texels 0 to 5: 12 doubles, the point of the world that lies at 0 in the frame, and the
 //         rows of the matrix from the world to the frame
-//         texels 6 to 8: 6 doubles, the box of what lies behind it, in the frame
-//         texel 9: the unit of the tree's header, the number of the first triangle, 0, 0
-#define OVC_PORTAL_TEXELS 10
+//         texels 6 and 7: the box of what lies behind it, in the frame, from xyz to xyz (float
+//         bits); the unit of the tree's header; the number of the first triangle
+#define OVC_PORTAL_TEXELS 8
 
 // A ray is two RGBA32UI texels, in the frame that pages share: org xyz, t_end (float bits); dir xyz
 // (float bits), the number of the triangle that it does not see or OVC_SKIPS_NONE, with

@@ -29,6 +29,16 @@ void push_mark(inout Descent d) {
     d.top = word_of(0, 4);
 }
 
+// Keeps the ray as it is in the frame of the top-level tree, for when it comes back there.
+void keep_scene(inout Packet packet, LocalRay local) {
+    packet.place.grid = packet.grid[0];
+    packet.place.backward = packet.backward;
+    packet.place.end = local.t_end;
+#if OVC_FLOAT_PAIRS
+    packet.place.early = local.early;
+#endif
+}
+
 void set_local_ray(inout Packet packet, LocalRay local, Tree tree) {
     packet.backward = lessThan(local.dir, vec3(0.0));
     packet.axes = axes_of(local.dir);
@@ -36,33 +46,38 @@ void set_local_ray(inout Packet packet, LocalRay local, Tree tree) {
             packet.any_hit[0]);
 }
 
-// Returns the ray in the frame of the top-level tree, whose portal is the first.
-LocalRay scene_ray(int ray) { return local_ray(world_ray(ray), portal_at(0)); }
-
-// Takes a ray that has come to a portal behind it. Returns false if there is no portal, or if the
-// ray goes no farther.
-bool enter_portal(int ray, inout Descent d, inout Packet packet, inout Found found) {
-    if (d.unit >= 0 || d.lost || found.best_hi < 0.0)
-        return false;
-    Portal portal = portal_at(-d.unit);
+// Brings a ray into another frame: one that sets out into that of the top-level tree, whose portal
+// is the first, and another one into that behind the portal that it has come to. If nothing behind
+// that portal can be nearer than what the ray has found, it stays in the top-level tree.
+void change_frame(int ray, bool sets_out, inout Descent d, inout Packet packet,
+                  inout Found found) {
+    Portal portal = portal_at(sets_out ? 0 : -d.unit);
     LocalRay local = local_ray(world_ray(ray), portal);
+    if (sets_out) {
+        found = nothing_found(OVC_NO_RAY);
+        packet.place.part = local.times;
+        packet.place.scene = local.times;
+    }
     Found there = in_times(found, packet.place.part, local.times, local.t_end);
     bool decidable = local.decidable && there.best_hi != OVC_UNDECIDABLE;
     d.unit = 0; // if the part has nothing for the ray, it goes on to the next of the stack
     if (local.meets && !decidable) {
-        found.best_hi = OVC_UNDECIDABLE;
+        // Candidates that lie before the part would give it an end, and it would go on.
+        found = nothing_found(OVC_UNDECIDABLE);
     } else if (local.meets && there.best_hi >= 0.0) { // else its hit comes before the part
         Tree tree = tree_of(portal.tree, 0);
         found = there;
         packet.place.part = local.times;
-        packet.place.behind_portal = true;
+        packet.place.behind_portal = !sets_out;
         packet.first_number = portal.first_number;
         measure(packet.place);
         set_local_ray(packet, local, tree);
-        push_mark(d);
+        if (sets_out)
+            keep_scene(packet, local);
+        else
+            push_mark(d);
         d.unit = tree.start.x;
     }
     d.done = d.lost || found.best_hi < 0.0;
-    return !d.done;
 }
 #endif

@@ -26,8 +26,8 @@ struct Portal {
     dvec3 row_x;
     dvec3 row_y;
     dvec3 row_z;
-    dvec3 lo; // the box of what lies behind it, in the frame
-    dvec3 hi;
+    vec3 lo; // the box of what lies behind it, in the frame
+    vec3 hi;
     int tree; // the unit of its header
     uint first_number;
 };
@@ -37,11 +37,9 @@ Portal portal_at(int number) {
     dvec2 a = doubles_of(portal_texel(texel)), b = doubles_of(portal_texel(texel + 1));
     dvec2 c = doubles_of(portal_texel(texel + 2)), d = doubles_of(portal_texel(texel + 3));
     dvec2 e = doubles_of(portal_texel(texel + 4)), f = doubles_of(portal_texel(texel + 5));
-    dvec2 g = doubles_of(portal_texel(texel + 6)), h = doubles_of(portal_texel(texel + 7));
-    dvec2 i = doubles_of(portal_texel(texel + 8));
-    uvec4 last = portal_texel(texel + 9);
-    return Portal(dvec3(a, b.x), dvec3(b.y, c), dvec3(d, e.x), dvec3(e.y, f), dvec3(g, h.x),
-                  dvec3(h.y, i), int(last.x), last.y);
+    uvec4 g = portal_texel(texel + 6), h = portal_texel(texel + 7);
+    return Portal(dvec3(a, b.x), dvec3(b.y, c), dvec3(d, e.x), dvec3(e.y, f),
+                  uintBitsToFloat(g.xyz), uintBitsToFloat(uvec3(g.w, h.x, h.y)), int(h.z), h.w);
 }
 
 double product(dvec3 row, dvec3 v) {
@@ -93,9 +91,10 @@ dvec2 between(dvec2 inside, double org, double dir, double lo, double hi) {
     return outside ? dvec2(1.0, 0.0) : (still ? inside : crossed);
 }
 dvec2 inside_box(FrameRay ray, Portal portal, dvec2 inside) {
-    inside = between(inside, ray.org.x, ray.dir.x, portal.lo.x, portal.hi.x);
-    inside = between(inside, ray.org.y, ray.dir.y, portal.lo.y, portal.hi.y);
-    return between(inside, ray.org.z, ray.dir.z, portal.lo.z, portal.hi.z);
+    dvec3 lo = dvec3(portal.lo), hi = dvec3(portal.hi);
+    inside = between(inside, ray.org.x, ray.dir.x, lo.x, hi.x);
+    inside = between(inside, ray.org.y, ray.dir.y, lo.y, hi.y);
+    return between(inside, ray.org.z, ray.dir.z, lo.z, hi.z);
 }
 
 LocalRay local_ray(WorldRay ray, Portal portal) {

@@ -50,22 +50,21 @@ struct Portal {
 
 Portal portal_at(int number) {
     int texel = number * OVC_PORTAL_TEXELS;
-    uvec2 d[18];
-    for (int i = 0; i < 9; ++i) {
+    uvec2 d[12];
+    for (int i = 0; i < 6; ++i) {
         d[2 * i] = portal_texel(texel + i).xy;
         d[2 * i + 1] = portal_texel(texel + i).zw;
     }
     Portal portal;
-    for (int axis = 0; axis < 3; ++axis) {
+    for (int axis = 0; axis < 3; ++axis)
         portal.origin[axis] = d[axis];
-        portal.lo[axis] = parts_of(d[12 + axis], 0).hi;
-        portal.hi[axis] = parts_of(d[15 + axis], 0).hi;
-    }
     for (int i = 0; i < 9; ++i)
         portal.rows[i] = pair_of(d[3 + i], 0);
-    uvec4 last = portal_texel(texel + 9);
-    portal.tree = int(last.x);
-    portal.first_number = last.y;
+    uvec4 g = portal_texel(texel + 6), h = portal_texel(texel + 7);
+    portal.lo = uintBitsToFloat(g.xyz);
+    portal.hi = uintBitsToFloat(uvec3(g.w, h.x, h.y));
+    portal.tree = int(h.z);
+    portal.first_number = h.w;
     return portal;
 }
 

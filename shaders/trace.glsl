@@ -9,9 +9,8 @@ void give_names(int first, Found found[OVC_PACKET], int counts[OVC_PACKET]);
 #endif
 
 #if OVC_PORTALS
-// Takes the ray `ray` in the frame of the top-level tree. Returns whether there is a ray that can
-// be decided in this frame.
-bool take_rays(int ray, Tree tree, out Packet packet, out Found found[OVC_PACKET]) {
+// Takes what a ray says besides where it goes: what it skips, if any hit will do, where it goes on.
+void take_asks(int ray, inout Packet packet) {
     uvec4 asks = ray_texel(ray * OVC_RAY_TEXELS + 4);
     packet.skip[0] = asks.z;
     packet.any_hit[0] = OVC_ANY_HIT != 0 || (asks.w & OVC_RAY_ANY_HIT) != 0u;
@@ -19,22 +18,6 @@ bool take_rays(int ray, Tree tree, out Packet packet, out Found found[OVC_PACKET
 #if OVC_MAY_WAIT
     packet.links[0].done = int(asks.w & OVC_NO_LEAF);
 #endif
-    LocalRay local = scene_ray(ray);
-    found[0] =
-        nothing_found(!local.meets ? OVC_NO_RAY : (local.decidable ? local.t_end : OVC_UNDECIDABLE));
-    set_local_ray(packet, local, tree);
-    packet.first_number = 0u;
-    packet.place.behind_portal = false;
-    packet.place.part = local.times;
-    packet.place.scene = local.times;
-    packet.place.grid = packet.grid[0];
-    packet.place.backward = packet.backward;
-    packet.place.end = found[0].best_hi;
-#if OVC_FLOAT_PAIRS
-    packet.place.early = local.early;
-#endif
-    measure(packet.place);
-    return local.meets && local.decidable;
 }
 #else
 // Takes the rays from `first` on, in the frame that all pages share. A packet has the octant and
@@ -69,6 +52,22 @@ bool take_rays(int first, Tree tree, out Packet packet, out Found found[OVC_PACK
     return any;
 }
 #endif
+
+// Takes the rays from `ray` on if these set out, and else brings the ray through the portal that it
+// has come to, if it has. Both are one change of frames: llvmpipe goes through everything that any
+// lane may need.
+void go_on(int ray, bool sets_out, Tree tree, inout Descent d, inout Packet packet,
+           inout Found found[OVC_PACKET]) {
+#if OVC_PORTALS
+    if (sets_out)
+        take_asks(ray, packet);
+    if (sets_out || is_at_portal(d, found[0]))
+        change_frame(ray, sets_out, d, packet, found[0]);
+#else
+    if (sets_out)
+        d.done = !take_rays(ray, tree, packet, found);
+#endif
+}
 
 const float OVC_ANYWHERE = -3.0e38; // a t before all others
 
@@ -136,20 +135,16 @@ bool give_answers(int first, Packet packet, Found found[OVC_PACKET], bool ended,
     return named;
 }
 
-// Traces on for at least one round, until all rays have their answers or `rounds` reaches
-// max_rounds. Returns whether they have.
-bool trace_on(int first, inout Descent d, inout Packet packet, inout Found found[OVC_PACKET],
+// Traces on for at least one round, until all rays have their answers, or the ray is at a portal,
+// or `rounds` reaches max_rounds. Returns whether they have their answers.
+bool trace_on(inout Descent d, inout Packet packet, inout Found found[OVC_PACKET],
               int max_rounds, inout int rounds) {
     bool ended = run(d, found, packet, 0, max_rounds, rounds);
 #if OVC_REFILL // else after each round
     for (int k = 0; k < OVC_PACKET; ++k)
         end_behind_candidates(found[k], packet.any_hit[k]);
 #endif
-#if OVC_PORTALS
-    if (ended)
-        ended = !enter_portal(first, d, packet, found[0]);
-#endif
-    return ended;
+    return ended && !is_at_portal(d, found[0]);
 }
 
 // A ray that has gone on for so many rounds, and has so many candidates that none could be named,
@@ -173,12 +168,13 @@ int trace_once(int ray, int max_rounds) {
     Packet packet;
     Found found[OVC_PACKET];
     int rounds = 0;
-    d.done = !take_rays(ray, tree, packet, found);
+    go_on(ray, true, tree, d, packet, found);
     int look = min(OVC_PATIENCE, max_rounds); // at this round
     bool whole, ended;
     do {
-        whole = trace_on(ray, d, packet, found, look, rounds);
+        whole = trace_on(d, packet, found, look, rounds);
         ended = whole || (rounds >= look && are_hopeless(found));
+        go_on(ray, false, tree, d, packet, found);
         look = rounds >= look ? min(look + OVC_PATIENCE, max_rounds) : look;
     } while (!ended && rounds < max_rounds);
     give_answers(ray, packet, found, ended && !d.lost, whole, rounds);
@@ -205,11 +201,11 @@ int trace_with_refill(int begin, int end, int max_rounds) {
     uint lanes_before = (1u << gl_SubGroupInvocationARB) - 1u;
     int rounds = 0;
     int looks = 0; // since the lane took its rays
-    d.done = !take_rays(ray, tree, packet, found);
+    go_on(ray, true, tree, d, packet, found);
     while (ray < end) {
         bool enough = rounds >= max_rounds;
         int own = 0; // at most OVC_REFILL_ROUNDS
-        bool whole = trace_on(ray, d, packet, found, enough ? 1 : OVC_REFILL_ROUNDS, own);
+        bool whole = trace_on(d, packet, found, enough ? 1 : OVC_REFILL_ROUNDS, own);
         rounds += OVC_REFILL_ROUNDS + 1;
         ++looks;
         bool ended = whole || (looks > OVC_PATIENCE / OVC_REFILL_ROUNDS && are_hopeless(found));
@@ -220,9 +216,9 @@ int trace_with_refill(int begin, int end, int max_rounds) {
             named = give_answers(ray, packet, found, ended && !d.lost, whole, rounds);
             ray = next + bitCount(ready_lanes & lanes_before) * OVC_PACKET;
             start(d, tree);
-            d.done = !take_rays(ray, tree, packet, found);
             looks = 0;
         }
+        go_on(ray, ready, tree, d, packet, found);
         next += bitCount(ready_lanes) * OVC_PACKET;
 #if OVC_NAMES > 2
         // llvmpipe goes through the loop of give_names() once where no lane has any.

@@ -56,6 +56,11 @@ struct Descent {
 // Returns whether the ray goes on in this tree, and not to a portal.
 bool goes_on(Descent d) { return OVC_PORTALS == 0 || d.unit >= 0; }
 
+// Returns whether the ray has come to a portal, and looks for something still.
+bool is_at_portal(Descent d, Found found) {
+    return !goes_on(d) && !d.lost && found.best_hi >= 0.0;
+}
+
 // Goes down to the first of the children; if there is none, and `leave`, to the next of the stack.
 void advance(inout Descent d, int first_child, Children children, bool leave) {
     Way way = way_to(children);

@@ -19,7 +19,7 @@ struct Portal {
     dvec3 origin{0}; // the point of the world that lies at 0 in the frame
     std::array<dvec3, 3> rows{dvec3(1, 0, 0), dvec3(0, 1, 0),
                               dvec3(0, 0, 1)}; // local = rows (world - origin)
-    Box box;                                   // of the part behind it, in the frame
+    Box box;                                   // of the part behind it, in the frame; floats
     Box bounds;                                // the same in the world
     uint32_t tree = 0;                         // the unit of the header of the part's tree
     uint32_t first_number = 0;                 // the part's triangle numbers count from here
