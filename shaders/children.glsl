@@ -25,6 +25,13 @@ void add(inout Children children, Children c) {
 Children children_met(Stretches s) { return Children(lessThan(s.enter, s.exit)); }
 Children children_met(ivec4 entries) { return Children(lessThan(entries, ivec4(OVC_NO_CHILD))); }
 
+// Makes one child, the first, of those that the ray meets, if `all` are the same.
+Children joined(Children children, bool all) {
+    bvec4 met = children.met;
+    bool others = met.y || met.z || met.w;
+    return Children(bvec4(met.x || (all && others), !all && met.y, !all && met.z, !all && met.w));
+}
+
 Way way_to(Children children) {
     int list = children.met.w ? 7 : 1;
     list = children.met.z ? list << 2 | 2 : list;
@@ -49,6 +56,13 @@ void order(inout int a, inout int b) {
     int low = min(a, b);
     b = max(a, b);
     a = low;
+}
+
+// Makes one child, the first, of those that the ray meets, if `all` are the same.
+Children joined(Children children, bool all) {
+    ivec4 k = children.keys;
+    int first = min(min(k.x, k.y), min(k.z, k.w));
+    return Children(all ? ivec4(first, OVC_NO_CHILD, OVC_NO_CHILD, OVC_NO_CHILD) : k);
 }
 
 // Sorts by a network of five comparisons, with each child's number in the two lowest bits.

@@ -54,10 +54,11 @@
 #define OVC_LEADS_NOWHERE 0
 #define OVC_KEY_LEAF 0xffff
 
-// If pages lie in several frames, the tree's lowest nodes are portals with one child each. The
-// parts' trees follow the top-level tree, each with a header of its own. Texel 3 of a portal: its
-// number, negated; 0, 0, 0. Each entry of the table of portals has OVC_PORTAL_TEXELS texels; number
-// 0 is the way back to the top-level tree. A double is two words, the low one first.
+// If pages lie in several frames, the tree's lowest nodes are portals; a ray that meets any of the
+// up to four boxes of such a node goes through the portal. The parts' trees follow the top-level
+// tree, each with a header of its own. Texel 3 of a portal's node: the portal's number, negated; 0,
+// 0, 0. Each entry of the table of portals has OVC_PORTAL_TEXELS texels; number 0 is the way back
+// to the top-level tree. A double is two words, the low one first.
 //
 // portal  texels 0 to 5: 12 doubles, the point of the world that lies at 0 in the frame, and the
 //         rows of the matrix from the world to the frame

@@ -238,6 +238,9 @@ Children children_of(Unit node, inout Packet packet, Found found[OVC_PACKET], bo
         add(children,
             follow(packet.links[k], node, stretches(boxes, grid_of(packet, k), end), packet.place));
     }
+#if OVC_PORTALS
+    children = joined(children, int(node.w.x) < 0); // the boxes of a portal's node
+#endif
     return children;
 }
 

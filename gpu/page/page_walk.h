@@ -13,6 +13,7 @@
 #include "gpu/page/top_level.h"
 #include "shaders/layout.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cassert>
@@ -172,6 +173,17 @@ private:
             __builtin_prefetch(below + size_t(first_child + child) * OVC_UNIT_TEXELS);
         NodeMeeting meeting;
         meet_(rays_, here.rays, &texels[0].x, meeting);
+        if (int32_t(first_child) < 0) { // all boxes are around what lies behind one portal
+            UnitOnWay portal{below, first_child, 0, std::numeric_limits<double>::infinity()};
+            for (uint32_t child = 0; child < 4; ++child)
+                if (meeting.rays[child] != 0) {
+                    portal.rays |= RaySet(meeting.rays[child]);
+                    portal.enter = std::min(portal.enter, meeting.enter[child]);
+                }
+            if (portal.rays != 0)
+                stack_.push(portal);
+            return false;
+        }
         uint32_t by_place[4]; // the farthest first
         for (uint32_t child = 0; child < 4; ++child)
             by_place[meeting.place[child]] = child;

@@ -3,92 +3,24 @@
 // such trees it builds a BVH over the portals to them.
 #include "gpu/page/top_level.h"
 
+#include "core/system/parallel.h"
 #include "gpu/bvh/reinsert.h"
 #include "gpu/page/grid.h"
 #include "gpu/page/node_boxes.h"
+#include "gpu/page/open_nodes.h"
 #include "gpu/page/packer.h"
+#include "gpu/page/portal_boxes.h"
 #include "shaders/layout.h"
 
 #include <algorithm>
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 namespace ovc {
 namespace {
-
-/// A unit of a page, and its box in cells of the grid, each cell as large as it is in the frame.
-struct Entry {
-    uint32_t page;
-    uint32_t unit;
-    Boxf box;
-};
-
-std::span<const uvec4, OVC_UNIT_TEXELS> unit_of(const Page& page, uint32_t unit) {
-    return page.view().subspan(size_t(unit) * OVC_UNIT_TEXELS).first<OVC_UNIT_TEXELS>();
-}
-
-bool is_pair(const Page& page, uint32_t unit) {
-    return (unit_of(page, unit)[3].w & OVC_PAIR) != 0;
-}
-
-uint32_t first_child(std::span<const Page> pages, const Entry& node) {
-    return unit_of(pages[node.page], node.unit)[3].x;
-}
-
-/// Calls visit(entry) for each child of a node.
-template <class Visit>
-void for_each_child(std::span<const Page> pages, uint32_t page, uint32_t node, Visit&& visit) {
-    const auto words = unit_of(pages[page], node);
-    const vec3 cell = header_of(pages[page].view()).cell;
-    for (uint32_t child = 0; child < 4; ++child) {
-        Entry entry{page, words[3].x + child, {}};
-        for (int axis = 0; axis < 3; ++axis) {
-            const GridRange range = range_of(words[size_t(axis)], child);
-            entry.box.lo[axis] = float(range.lo) * cell[axis];
-            entry.box.hi[axis] = float(range.hi) * cell[axis];
-        }
-        if (!entry.box.empty())
-            visit(entry);
-    }
-}
-
-Entry root_of(std::span<const Page> pages, uint32_t page) {
-    Entry root{page, OVC_ROOT_UNIT, {}};
-    for_each_child(pages, page, OVC_ROOT_UNIT,
-                   [&](const Entry& child) { root.box.add(child.box); });
-    return root;
-}
-
-/// Returns the roots of all pages, but replaces the largest nodes by their children, again and
-/// again, as long as there are no more than `max` entries. Based on: Benthin, Woop, Wald and Afra
-/// 2017, "Improved Two-Level BVHs using Partial Re-Braiding".
-std::vector<Entry> opened(std::span<const Page> pages, size_t max) {
-    const auto smaller = [](const Entry& a, const Entry& b) {
-        return a.box.half_area() < b.box.half_area();
-    };
-    std::vector<Entry> nodes, pairs;
-    for (uint32_t page = 0; page < pages.size(); ++page)
-        nodes.push_back(root_of(pages, page));
-    std::ranges::make_heap(nodes, smaller);
-    while (!nodes.empty() && nodes.size() + pairs.size() + 3 <= max) {
-        std::ranges::pop_heap(nodes, smaller);
-        const Entry largest = nodes.back();
-        nodes.pop_back();
-        for_each_child(pages, largest.page, largest.unit, [&](const Entry& child) {
-            if (is_pair(pages[child.page], child.unit)) {
-                pairs.push_back(child);
-                return;
-            }
-            nodes.push_back(child);
-            std::ranges::push_heap(nodes, smaller);
-        });
-    }
-    nodes.insert(nodes.end(), pairs.begin(), pairs.end());
-    std::ranges::sort(nodes, {}, [](const Entry& e) { return std::pair(e.page, e.unit); });
-    return nodes;
-}
 
 /// The grid on which the boxes of entries, and unions of them, lie exactly.
 struct Cells {
@@ -127,20 +59,36 @@ Page tree_of_one(const Page& page) {
     return tree;
 }
 
-/// Builds a BVH over the portals' boxes in the world; its leaf i is portal number i + 1.
-Page tree_over(std::span<const Portal> portals, const Leaf& scene) {
+/// The boxes of a portal's node, in the frame of the scene.
+using PortalBoxes = std::array<Boxf, PartOutline::kGroups>;
+
+PortalBoxes boxes_in(const Frame& frame, const PartOutline::Groups& groups) {
+    PortalBoxes boxes;
+    for (size_t i = 0; i < groups.size(); ++i)
+        if (!groups[i].empty())
+            boxes[i] = {vec3(frame.to_local(groups[i].lo)), vec3(frame.to_local(groups[i].hi))};
+    return boxes;
+}
+
+/// Builds a BVH over portals; its leaf i is portal number i + 1.
+Page tree_over(std::span<const PortalBoxes> portals, const Leaf& scene) {
     std::vector<Boxf> boxes;
-    for (const Portal& portal : portals)
-        boxes.push_back({vec3(scene.frame.to_local(portal.bounds.lo)),
-                         vec3(scene.frame.to_local(portal.bounds.hi))});
+    for (const PortalBoxes& groups : portals) {
+        Boxf all;
+        for (const Boxf& box : groups)
+            all.add(box);
+        boxes.push_back(all);
+    }
     std::vector<BvhNode> nodes = build_bvh(boxes, nullptr);
     reinsert(nodes, nullptr, kThorough);
     const Grid grid({scene.frame.to_local(scene.grid.lo), scene.frame.to_local(scene.grid.hi)});
     const auto put = [&](uint32_t i, std::span<uvec4, OVC_UNIT_TEXELS> unit) {
         for (int axis = 0; axis < 3; ++axis)
-            for (size_t child = 0; child < 4; ++child)
+            for (size_t child = 0; child < 4; ++child) {
+                const Boxf& box = portals[i][child];
                 put_range(unit[size_t(axis)], child,
-                          child == 0 ? grid.range(boxes[i], axis) : GridRange());
+                          box.empty() ? GridRange() : grid.range(box, axis));
+            }
         unit[3] = {~i, 0, 0, 0}; // -(i + 1)
     };
     return Packer(nodes, grid.header(), grid, put, nullptr).pack();
@@ -219,19 +167,19 @@ TopLevel build_top_level(std::span<const Page> pages, size_t max_links) {
 TopLevel build_top_level(const Level1& level1, std::span<const Page> pages, size_t max_links,
                          std::span<const uint32_t> without) {
     Parts parts;
-    parts.add(level1, 0, std::array{Place()}, without);
-    if (parts.pages.empty())
+    parts.add(level1, 0, {Place()}, without);
+    if (parts.all.empty())
         return {};
-    if (parts.pages.size() > 1)
-        return build_top_level(level1.bounds, std::move(parts), pages, max_links);
-    TopLevel top = tree_of_part(parts.pages[0], pages, max_links);
-    const Leaf& leaf = level1.leaves[parts.pages[0].first];
+    if (parts.all.size() > 1)
+        return build_top_level(level1.bounds, parts, pages, max_links);
+    TopLevel top = tree_of_part(parts.all[0].pages, pages, max_links);
+    const Leaf& leaf = level1.leaves[parts.all[0].pages.first];
     if (!parts.has_all || !(leaf.frame == scene_leaf(level1.bounds).frame)) // there were others
         top.scene = Leaf{.cell = {}, .box = leaf.grid, .frame = leaf.frame, .grid = leaf.grid};
     return top;
 }
 
-void Parts::add(const Level1& level1, uint32_t first_page, std::span<const Place> places,
+void Parts::add(const Level1& level1, uint32_t first_page, const std::vector<Place>& places,
                 std::span<const uint32_t> without) {
     for (const LeafRange& part : parts_of(level1)) {
         if (std::ranges::binary_search(without, part.first)) {
@@ -240,58 +188,85 @@ void Parts::add(const Level1& level1, uint32_t first_page, std::span<const Place
             continue;
         }
         const Leaf& leaf = level1.leaves[part.first];
-        std::vector<Portal> into;
-        for (const Place& place : places) {
-            into.push_back(portal_into(leaf.frame, leaf.grid, place.transform));
-            into.back().first_number = place.first_number;
-        }
-        add({first_page + part.first, part.count}, into);
+        all.push_back({{first_page + part.first, part.count}, leaf.frame, leaf.grid, places, {}});
     }
 }
 
-Box Parts::bounds() const {
+size_t Parts::portals() const {
+    size_t count = 0;
+    for (const PlacedPart& part : all)
+        count += part.places.size();
+    return count;
+}
+
+namespace {
+
+/// Returns the portals into a part.
+std::vector<Portal> portals_into(const PlacedPart& part) {
+    std::vector<Portal> portals;
+    for (const Place& place : part.places) {
+        portals.push_back(portal_into(part.frame, part.box, place.transform));
+        portals.back().first_number = place.first_number;
+    }
+    return portals;
+}
+
+Box bounds_of(std::span<const Portal> portals) {
     Box all;
     for (const Portal& portal : portals)
         all.add(portal.bounds);
     return all;
 }
 
-void Parts::add(LeafRange part, std::span<const Portal> into) {
-    for (const Portal& portal : into) {
-        portals.push_back(portal);
-        portals.back().tree = uint32_t(pages.size());
-    }
-    pages.push_back(part);
+/// Returns the boxes of the nodes of a part's portals.
+std::vector<PortalBoxes> boxes_of_portals(const PlacedPart& part, std::span<const Page> pages,
+                                          const Frame& scene) {
+    constexpr size_t kGrain = 64; // portals a task
+    const PartOutline outline(pages.subspan(part.pages.first, part.pages.count));
+    std::vector<PortalBoxes> boxes(part.places.size());
+    parallel_for(boxes.size(), kGrain, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i)
+            boxes[i] = boxes_in(scene, outline.placed(part.frame, part.places[i].transform));
+    });
+    return boxes;
 }
 
-TopLevel build_top_level(const Box& bounds, Parts parts, std::span<const Page> pages,
+} // namespace
+
+TopLevel build_top_level(const Box& bounds, const Parts& parts, std::span<const Page> pages,
                          size_t max_links) {
-    assert(!parts.pages.empty() && parts.portals.size() >= parts.pages.size());
-    const Leaf scene = scene_leaf(parts.has_all ? bounds : parts.bounds());
+    assert(parts.portals() >= parts.all.size() && !parts.all.empty());
+    std::vector<Portal> portals;
+    for (const PlacedPart& part : parts.all)
+        std::ranges::move(portals_into(part), std::back_inserter(portals));
+    const Leaf scene = scene_leaf(parts.has_all ? bounds : bounds_of(portals));
     TopLevel top;
-    if (parts.portals.size() == 1 && parts.portals[0].first_number == 0) {
-        top = tree_of_part(parts.pages[0], pages, max_links);
-        top.way_in = parts.portals[0];
+    if (portals.size() == 1 && portals[0].first_number == 0) {
+        top = tree_of_part(parts.all[0].pages, pages, max_links);
+        top.way_in = portals[0];
         if (!parts.has_all)
             top.scene = scene;
         return top;
     }
     if (!parts.has_all)
         top.scene = scene;
-    top.tree = tree_over(parts.portals, scene);
+    std::vector<PortalBoxes> boxes;
+    for (const PlacedPart& part : parts.all)
+        std::ranges::move(boxes_of_portals(part, pages, scene.frame), std::back_inserter(boxes));
+    top.tree = tree_over(boxes, scene);
     const uint32_t depth = top.tree.depth;
-    std::vector<uint32_t> begins;
-    for (const auto& [first, count] : parts.pages) {
+    auto portal = portals.begin();
+    for (const PlacedPart& part : parts.all) {
+        const auto& [first, count] = part.pages;
         const size_t links = std::max<size_t>(max_links * count / pages.size(), count);
-        begins.push_back(append(top, build_top_level(pages.subspan(first, count), links), first));
-    }
-    for (Portal& portal : parts.portals) {
-        assert(portal.tree < begins.size());
-        portal.tree = begins[portal.tree];
+        const uint32_t begin =
+            append(top, build_top_level(pages.subspan(first, count), links), first);
+        for (size_t i = 0; i < part.places.size(); ++i)
+            (portal++)->tree = begin;
     }
     skip_to_page(top, pages.size());
     top.portals = {portal_into(scene.frame, scene.box)};
-    top.portals.insert(top.portals.end(), parts.portals.begin(), parts.portals.end());
+    top.portals.insert(top.portals.end(), portals.begin(), portals.end());
     top.depth += depth + 1; // and the word by which a ray comes back
     return top;
 }

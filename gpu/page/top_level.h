@@ -98,25 +98,29 @@ struct Place {
     uint32_t first_number = 0;
 };
 
-/// Parts of a scene, and the portals that lead to them.
+/// Pages that share a frame, and where they lie in the world.
+struct PlacedPart {
+    LeafRange pages;
+    Frame frame;
+    Box box; // around all that the pages hold, before it is placed
+    std::vector<Place> places;
+    std::vector<Transform> kept; // transforms of places that nothing else keeps
+};
+
 struct Parts {
-    std::vector<LeafRange> pages;
-    std::vector<Portal> portals; // Portal::tree: the index of the part in `pages`
-    bool has_all = true;         // no leaf was left out
+    std::vector<PlacedPart> all;
+    bool has_all = true; // no leaf was left out
 
     /// Adds the parts of a level 1 whose pages begin with `first_page`, in all its places. without:
     /// leaves, sorted, that are parts by themselves and are left out.
-    void add(const Level1& level1, uint32_t first_page, std::span<const Place> places,
+    void add(const Level1& level1, uint32_t first_page, const std::vector<Place>& places,
              std::span<const uint32_t> without = {});
-    /// Adds a part that these portals lead to.
-    void add(LeafRange part, std::span<const Portal> into);
-    /// Returns the box around them all.
-    Box bounds() const;
+    size_t portals() const;
 };
 
-/// Builds the tree over parts. A part that is alone, and whose triangles count from 0, has the tree
-/// in its frame. bounds: of the whole scene.
-TopLevel build_top_level(const Box& bounds, Parts parts, std::span<const Page> pages,
+/// Builds the tree over parts, with a portal into each place of each. A part that is alone, and
+/// whose triangles count from 0, has the tree in its frame. bounds: of the whole scene.
+TopLevel build_top_level(const Box& bounds, const Parts& parts, std::span<const Page> pages,
                          size_t max_links);
 
 /// Whether rays can go through the tree in a pool: the tree fits the first buffer, the largest page

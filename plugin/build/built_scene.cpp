@@ -348,15 +348,19 @@ void add_left(Parts& parts, const BuiltScene& scene, const SharedMesh& mesh) {
     const BuiltScene& level = mesh.scene;
     if (level.pages.empty())
         return;
-    const Box box = box_around_pages(level);
+    PlacedPart part{{mesh.first_page, uint32_t(level.pages.size())},
+                    level.level1.leaves.front().frame,
+                    box_around_pages(level),
+                    {},
+                    {}};
     const Transform back = *inverse(mesh.rest_place());
-    std::vector<Portal> into;
+    part.kept.reserve(mesh.places.size()); // the places point to them
     for (const uint32_t place : mesh.places) {
-        const Transform moved = then(back, or_identity(scene.soup.chunks[place].transform()));
-        into.push_back(portal_into(level.level1.leaves.front().frame, box, &moved));
-        into.back().first_number = scene.numbers.of({place, 0}) - level.numbers.first();
+        part.kept.push_back(then(back, or_identity(scene.soup.chunks[place].transform())));
+        part.places.push_back(
+            {&part.kept.back(), scene.numbers.of({place, 0}) - level.numbers.first()});
     }
-    parts.add({mesh.first_page, uint32_t(level.pages.size())}, into);
+    parts.all.push_back(std::move(part));
 }
 
 void add_unplaced(Parts& parts, const BuiltScene& scene, const SharedMesh& mesh) {
@@ -411,15 +415,15 @@ TopLevel top_level_of(const BuiltScene& scene, size_t max_links) {
     for (const SharedMesh& mesh : scene.shared)
         pages += mesh.is_home ? uint32_t(mesh.scene.pages.size()) : 0;
     if (pages > scene.level1.leaves.size())
-        parts.add({0, pages}, std::array{portal_into(scene.home->frame, scene.home->grid)});
+        parts.all.push_back({{0, pages}, scene.home->frame, scene.home->grid, {Place()}, {}});
     else
-        parts.add(scene.level1, 0, std::array{Place()}, without);
+        parts.add(scene.level1, 0, {Place()}, without);
     for (const SharedMesh& mesh : scene.shared) {
         assert(mesh.first_page + mesh.scene.pages.size() <= scene.pages.size());
         if (!mesh.is_home)
             (mesh.rest ? add_left : add_unplaced)(parts, scene, mesh);
     }
-    return build_top_level(scene.level1.bounds, std::move(parts), scene.pages, max_links);
+    return build_top_level(scene.level1.bounds, parts, scene.pages, max_links);
 }
 
 } // namespace ovc
