@@ -13,6 +13,9 @@ namespace {
 
 /// Boxes of an outline. Each takes some nanoseconds a portal.
 constexpr size_t kBoxes = 64;
+/// The boxes are so much wider on each side, in the frame, where the pages lie within [-1, 1]: a
+/// thousand times what roundings move between there and the world (is_well_moved()).
+constexpr double kMargin = 0x1p-20;
 
 /// Returns the roots of up to `max` subtrees that hold all of the tree, the largest nodes opened.
 std::vector<uint32_t> largest_subtrees(std::span<const BvhNode> nodes, size_t max) {
@@ -39,12 +42,8 @@ PartOutline::PartOutline(std::span<const Page> pages) {
     const std::vector<Entry> entries =
         opened(pages, in_memory ? std::max(kBoxes, pages.size()) : pages.size());
     std::vector<Boxf> boxes;
-    Boxf all;
-    for (const Entry& entry : entries) {
+    for (const Entry& entry : entries)
         boxes.push_back(entry.box);
-        all.add(entry.box);
-    }
-    const double margin = 0x1p-20 * double(max_component(all.extent()));
     const GridHeader grid = header_of(pages[0].view());
     const dvec3 first = dvec3(grid.middle) - double(kGridMiddle) * dvec3(grid.cell);
     const std::vector<BvhNode> nodes = build_bvh(boxes);
@@ -57,7 +56,7 @@ PartOutline::PartOutline(std::span<const Page> pages) {
                 continue;
             }
             const dvec3 lo(nodes[node].box.lo), hi(nodes[node].box.hi);
-            groups_[i].push_back({first + (lo + hi) / 2.0, (hi - lo) / 2.0 + margin});
+            groups_[i].push_back({first + (lo + hi) / 2.0, (hi - lo) / 2.0 + kMargin});
         }
     }
 }
