@@ -90,8 +90,17 @@ dvec2 between(dvec2 inside, double org, double dir, double lo, double hi) {
     dvec2 crossed = dvec2(max(inside.x, min(a, b)), min(inside.y, max(a, b)));
     return outside ? dvec2(1.0, 0.0) : (still ? inside : crossed);
 }
-dvec2 inside_box(FrameRay ray, Portal portal, dvec2 inside) {
-    dvec3 lo = dvec3(portal.lo), hi = dvec3(portal.hi);
+
+// Returns how far the ray may be off, in doubles, from where it comes to the box: from farther away
+// it may seem to miss it. The box lies within 2 of the origin.
+double off_at_box(FrameRay ray, double speed) {
+    const double rounding = 1.7763568394002505e-15lf; // 2^-49
+    double ratio = ray.dir_reach / max(speed, 1.0e-300lf);
+    return min((ray.reach + (ray.reach + 2.0) * ratio) * rounding, 1.0e290lf);
+}
+
+dvec2 inside_box(FrameRay ray, Portal portal, double off, dvec2 inside) {
+    dvec3 lo = dvec3(portal.lo) - off, hi = dvec3(portal.hi) + off;
     inside = between(inside, ray.org.x, ray.dir.x, lo.x, hi.x);
     inside = between(inside, ray.org.y, ray.dir.y, lo.y, hi.y);
     return between(inside, ray.org.z, ray.dir.z, lo.z, hi.z);
@@ -100,8 +109,9 @@ dvec2 inside_box(FrameRay ray, Portal portal, dvec2 inside) {
 LocalRay local_ray(WorldRay ray, Portal portal) {
     FrameRay frame = frame_ray(ray, portal);
     dvec3 org = frame.org, dir = frame.dir;
-    dvec2 inside = inside_box(frame, portal, dvec2(ray.t_min, ray.t_max));
     double speed = largest(dir);
+    dvec2 inside =
+        inside_box(frame, portal, off_at_box(frame, speed), dvec2(ray.t_min, ray.t_max));
     LocalRay local;
     local.meets = inside.x <= inside.y && ray.t_min <= ray.t_max;
     local.times = Times(inside.x, speed);

@@ -39,6 +39,14 @@ double reach_of(const std::array<dvec3, 3>& rows, const dvec3& v) {
                      glm::dot(glm::abs(rows[2]), size)});
 }
 
+/// Returns how far a ray may be off, in doubles, from where it comes to a box within 2 of the
+/// frame's origin: from farther away it may seem to miss it. reach, dir_reach: reach_of() its
+/// origin and its direction.
+double off_at_box(double reach, double dir_reach, double speed) {
+    const double ratio = dir_reach / std::max(speed, 1e-300);
+    return std::min((reach + (reach + 2) * ratio) * 0x1p-49, 1e290);
+}
+
 /// Returns the word of what a ray asks for.
 uint32_t asks_of(uint32_t skip, bool any_hit) {
     return std::min<uint32_t>(skip, OVC_SKIPS_NONE) | (any_hit ? OVC_RAY_ANY_HIT : 0);
@@ -85,16 +93,18 @@ LocalRay local_ray(const Portal& portal, const Ray& ray, uint32_t skip, bool any
     there.org = portal.to_local_direction(from_origin);
     there.dir = portal.to_local_direction(ray.dir);
     const double longest = largest(there.dir);
-    const Interval inside = inside_box(portal.box, there);
+    const double reach = reach_of(portal.rows, from_origin);
+    const double dir_reach = reach_of(portal.rows, ray.dir);
+    const Interval inside =
+        inside_box(portal.box.padded(off_at_box(reach, dir_reach, longest)), there);
     time = {inside.enter, longest};
 
     LocalRay local;
     local.dir = vec3(there.dir * (1 / longest));
     local.asks = asks_of(skip, any_hit);
     local.org = vec3(there.org + there.dir * inside.enter);
-    local.t_end = t_end_of(ray, inside, longest,
-                           std::max(reach_of(portal.rows, from_origin),
-                                    reach_of(portal.rows, ray.dir) * std::abs(inside.enter)));
+    local.t_end =
+        t_end_of(ray, inside, longest, std::max(reach, dir_reach * std::abs(inside.enter)));
     return local;
 }
 

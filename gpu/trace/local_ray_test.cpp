@@ -81,6 +81,22 @@ TEST(LocalRay, IsWhereTheRayIsBehindAPortal) {
         }
 }
 
+// From 1e15 sizes of the mesh away, along two of its axes, doubles cannot tell where a ray comes to
+// it, nor that it misses it.
+TEST(LocalRay, FromFarAwayMayMeetWhatItSeemsToMiss) {
+    test::Random random(9);
+    const Leaf leaf = leaf_of(dvec3(0), 1);
+    const Transform transform{{{{1, 0, 0, 7}, {0, 1e-4, 0, -3}, {0, 0, 1e-4, 2}}}};
+    const Portal portal = portal_into(leaf.frame, leaf.box, &transform);
+    for (int i = 0; i < 2000; ++i) {
+        const dvec3 target = transform(random.point(-1, 1));
+        const dvec3 org = target + 1e11 * random.point(-1, 1);
+        LocalTime time;
+        const LocalRay local = local_ray(portal, Ray{org, 0, target - org}, 0, false, time);
+        ASSERT_NE(local.t_end, OVC_NO_RAY);
+    }
+}
+
 /// Returns a transform of any kind, which may stretch and shift by up to 2^range.
 Transform any_transform(test::Random& random, int range) {
     Transform transform;
