@@ -25,7 +25,7 @@ namespace {
 constexpr std::string_view kKind = "ovc levels";
 /// The version must be raised when a build makes other leaves or pages of the same soup. A change
 /// of layout.h is noticed without that.
-constexpr uint32_t kVersion = 13;
+constexpr uint32_t kVersion = 14;
 
 /// A build makes the same levels where all of its key is the same.
 struct Key {
