@@ -97,6 +97,38 @@ TEST(LocalRay, FromFarAwayMayMeetWhatItSeemsToMiss) {
     }
 }
 
+// The second and the third row are multiples of the first, rounded: the determinant is nothing but
+// roundings, and by chance as large as if the matrix could be inverted.
+TEST(WellPlaced, NothingIsWhereTheMatrixIsSingularButForRoundings) {
+    test::Random random(10);
+    for (int i = 0; i < 1000; ++i) {
+        const dvec3 first = std::exp2(30 * random(-1, 1)) * random.point(-1, 1);
+        Transform transform{};
+        for (auto& row : transform.rows) {
+            const dvec3 v = random(-1, 1) * first;
+            row = {v.x, v.y, v.z, random(-1, 1)};
+        }
+        EXPECT_FALSE(inverse_matrix(transform));
+        EXPECT_FALSE(is_well_placed({dvec3(-1), dvec3(1)}, &transform));
+    }
+}
+
+TEST(WellPlaced, PointsComeBackToWhereTheyWere) {
+    test::Random random(11);
+    int placed = 0;
+    for (int i = 0; i < 1000; ++i) {
+        Transform transform{};
+        for (auto& row : transform.rows)
+            row = {random(-1, 1), random(-1, 1), random(-1, 1), random(-100, 100)};
+        if (!is_well_placed({dvec3(-1), dvec3(1)}, &transform))
+            continue;
+        ++placed;
+        const dvec3 point = random.point(-1, 1);
+        EXPECT_LT(glm::length((*inverse(transform))(transform(point)) - point), 0x1p-30);
+    }
+    EXPECT_GT(placed, 950);
+}
+
 /// Returns a transform of any kind, which may stretch and shift by up to 2^range.
 Transform any_transform(test::Random& random, int range) {
     Transform transform;
