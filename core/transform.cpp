@@ -44,7 +44,7 @@ static dvec3 way_off(const Matrix& inverse, const Matrix& matrix, const dvec3& r
 }
 
 std::optional<std::array<dvec3, 3>> inverse_matrix(const Transform& transform) {
-    constexpr double kFarthestOff = 0x1p-20;
+    constexpr double kMaxOff = 0x1p-20;
     const Matrix matrix = matrix_of(transform);
     const dvec3 a = glm::cross(matrix[1], matrix[2]), b = glm::cross(matrix[2], matrix[0]),
                 c = glm::cross(matrix[0], matrix[1]);
@@ -55,7 +55,7 @@ std::optional<std::array<dvec3, 3>> inverse_matrix(const Transform& transform) {
     for (int i = 0; i < 3; ++i)
         inverse[size_t(i)] = dvec3(a[i], b[i], c[i]) / determinant;
     // The determinant of a singular matrix may be nothing but roundings.
-    if (!(max_component(way_off(inverse, matrix, dvec3(1))) <= kFarthestOff))
+    if (!(max_component(way_off(inverse, matrix, dvec3(1))) <= kMaxOff))
         return std::nullopt;
     return inverse;
 }
@@ -113,7 +113,7 @@ dvec3 reach_of(const Matrix& matrix, const dvec3& reach) {
 } // namespace
 
 bool is_well_placed(const Box& box, const Transform* transform) {
-    const Transform place = or_identity(transform);
+    const Transform& place = or_identity(transform);
     const auto inverted = inverse_matrix(place);
     const double size = max_component(box.extent()) / 2;
     if (!inverted || box.empty() || !(size >= 1 / kWithinRange))

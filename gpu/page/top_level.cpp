@@ -192,13 +192,6 @@ void Parts::add(const Level1& level1, uint32_t first_page, const std::vector<Pla
     }
 }
 
-size_t Parts::portals() const {
-    size_t count = 0;
-    for (const PlacedPart& part : all)
-        count += part.places.size();
-    return count;
-}
-
 namespace {
 
 /// Returns the portals into a part.
@@ -235,7 +228,7 @@ std::vector<PortalBoxes> boxes_of_portals(const PlacedPart& part, std::span<cons
 
 TopLevel build_top_level(const Box& bounds, const Parts& parts, std::span<const Page> pages,
                          size_t max_links) {
-    assert(parts.portals() >= parts.all.size() && !parts.all.empty());
+    assert(!parts.all.empty());
     std::vector<Portal> portals;
     for (const PlacedPart& part : parts.all)
         std::ranges::move(portals_into(part), std::back_inserter(portals));

@@ -115,7 +115,6 @@ struct Parts {
     /// leaves, sorted, that are parts by themselves and are left out.
     void add(const Level1& level1, uint32_t first_page, const std::vector<Place>& places,
              std::span<const uint32_t> without = {});
-    size_t portals() const;
 };
 
 /// Builds the tree over parts, with a portal into each place of each. A part that is alone, and
