@@ -22,6 +22,9 @@ static constexpr const char* kDefaultScene = "knot";
 static constexpr std::string_view kAll = "all";
 static constexpr std::string_view kAuto = "auto";
 
+/// Whether instances are baked: the second.
+static constexpr std::array<std::string_view, 2> kInstances = {"shared", "baked"};
+
 /// In the order of SweepOver.
 static constexpr std::array<std::string_view, 5> kSweeps = {"rays", "triangles", "instances",
                                                             "leaves", "budget"};
@@ -95,9 +98,29 @@ void BenchWords::add_settings_to(CLI::App& app) {
                    "Timed calls of each; default: 5. With --bars three times as many where a call "
                    "takes hundredths of a second")
         ->type_name("N");
+    add_sweeps_to(app);
+    app.add_option("--device", device, "A number or a part of a name from `overcast devices`")
+        ->type_name("NAME");
+    app.add_option(
+           "--kernel-variant", kernel_variant,
+           "A variant that `overcast devices --tune` lists, for the contenders whose kernel, "
+           "fragment or compute, it is")
+        ->type_name("NAME");
+    add_ranks_own(app, ranks_own);
+    app.add_option("--json", json,
+                   "Also write what was measured as JSON (docs/benchmarks.md); -: to standard "
+                   "output, instead of the tables")
+        ->type_name("FILE|-");
+}
+
+void BenchWords::add_sweeps_to(CLI::App& app) {
     app.add_option("--leaves", leaves,
                    "The plugin with about so many level-1 leaves, or auto, a row for each")
         ->type_name("N,...");
+    app.add_option("--instances", instances,
+                   "The plugin with instances that share pages, or that are baked: triangles of "
+                   "their own; a row for each")
+        ->type_name("shared,baked");
     CLI::Option* memory =
         app.add_option("--gpu-memory", gpu_memory,
                        "The plugin with so much GPU memory (12M, 50% of the device's, all), a row "
@@ -112,18 +135,6 @@ void BenchWords::add_settings_to(CLI::App& app) {
            "All contenders together with so much host memory, 2G, for scenes in .ovc; those "
            "that hold a scene in memory are left out")
         ->type_name("SIZE");
-    app.add_option("--device", device, "A number or a part of a name from `overcast devices`")
-        ->type_name("NAME");
-    app.add_option(
-           "--kernel-variant", kernel_variant,
-           "A variant that `overcast devices --tune` lists, for the contenders whose kernel, "
-           "fragment or compute, it is")
-        ->type_name("NAME");
-    add_ranks_own(app, ranks_own);
-    app.add_option("--json", json,
-                   "Also write what was measured as JSON (docs/benchmarks.md); -: to standard "
-                   "output, instead of the tables")
-        ->type_name("FILE|-");
 }
 
 Result<std::vector<std::string>> parse_list(std::string_view option, std::string_view text) {
@@ -173,6 +184,15 @@ Result<std::vector<LeavesChoice>> parse_leaves_sweep(std::string_view text) {
         });
 }
 
+Result<std::vector<InstancesChoice>> parse_instances_sweep(std::string_view text) {
+    return parse_sweep<InstancesChoice>(
+        "--instances", text, [](const std::string& item) -> Result<InstancesChoice> {
+            const Result<size_t> choice = parse_choice("--instances", item, kInstances);
+            return choice ? InstancesChoice{*choice == 1, item}
+                          : Result<InstancesChoice>(choice.error());
+        });
+}
+
 Result<std::vector<BudgetChoice>> parse_memory_sweep(std::string_view text) {
     return parse_sweep<BudgetChoice>(
         "--gpu-memory", text, [](const std::string& item) -> Result<BudgetChoice> {
@@ -214,7 +234,10 @@ static Result<std::vector<Contender>> contenders_of(const BenchWords& words) {
                                                           : parse_resident_sweep(words.resident);
     if (!budgets)
         return budgets.error();
-    return choose_contenders(only, *leaves, *budgets);
+    const Result<std::vector<InstancesChoice>> instances = parse_instances_sweep(words.instances);
+    if (!instances)
+        return instances.error();
+    return choose_contenders(only, *leaves, *budgets, *instances);
 }
 
 static Result<std::vector<std::string>> workloads_of(const std::string& words) {
@@ -297,7 +320,8 @@ static Result<Done> understand_kind(const BenchWords& words, BenchJob& job) {
         return Done{};
     for (const auto& [name, text] :
          {std::pair("--only", &words.only), std::pair("--leaves", &words.leaves),
-          std::pair("--workloads", &words.workloads), std::pair("--gpu-memory", &words.gpu_memory),
+          std::pair("--instances", &words.instances), std::pair("--workloads", &words.workloads),
+          std::pair("--gpu-memory", &words.gpu_memory),
           std::pair("--host-memory", &words.host_memory), std::pair("--resident", &words.resident)})
         if (!text->empty())
             return Error{
@@ -343,6 +367,9 @@ static Result<Done> keep_to_host_memory(const BenchWords& words, BenchJob& job) 
     job.host_bytes = *bytes;
     if (!words.leaves.empty())
         return Error{"--leaves means nothing with --host-memory: the leaves of an .ovc file are "
+                     "built already"};
+    if (!words.instances.empty())
+        return Error{"--instances means nothing with --host-memory: the leaves of an .ovc file are "
                      "built already"};
     for (const std::string& scene : job.scenes)
         if (std::filesystem::path(scene).extension() != ".ovc")

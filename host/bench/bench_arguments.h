@@ -32,6 +32,7 @@ struct BenchWords {
     std::string size; // empty: 1024x1024; 512x512 for programs, 256x256 for pictures
     std::string repeats = "5";
     std::string leaves;
+    std::string instances;
     std::string gpu_memory;
     std::string host_memory;
     std::string resident;
@@ -45,6 +46,7 @@ struct BenchWords {
 private:
     void add_modes_to(CLI::App& app);
     void add_settings_to(CLI::App& app);
+    void add_sweeps_to(CLI::App& app);
 };
 
 struct BenchJob {
@@ -76,6 +78,10 @@ Result<std::vector<std::string>> parse_list(std::string_view option, std::string
 /// Returns the choices of a list such as "8,32,auto". The item "auto" is the plugin's own choice,
 /// and so is an empty text.
 Result<std::vector<LeavesChoice>> parse_leaves_sweep(std::string_view text);
+
+/// Returns the choices of a list of "shared" and "baked"; the plugin's own choice for an empty
+/// text.
+Result<std::vector<InstancesChoice>> parse_instances_sweep(std::string_view text);
 
 /// Returns the choices of a list such as "all,12M,50%". Sizes are those of `overcast render`; "all"
 /// is the device's default, and so is an empty text.

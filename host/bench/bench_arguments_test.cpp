@@ -69,6 +69,9 @@ TEST(BenchArguments, SweepThePluginAlone) {
                              "certified-compute, 1 leaf, budget 12M",
                              "certified-compute, 32 leaves, budget all",
                              "certified-compute, 32 leaves, budget 12M", "cpu-kdtree"));
+    EXPECT_THAT(labels({.only = "certified-compute,cpu-kdtree", .instances = "baked,shared"}),
+                testing::ElementsAre("certified-compute, baked", "certified-compute, shared",
+                                     "cpu-kdtree"));
 }
 
 TEST(BenchArguments, UnderstandTheValuesOfSweeps) {
@@ -76,6 +79,10 @@ TEST(BenchArguments, UnderstandTheValuesOfSweeps) {
     ASSERT_TRUE(bool(leaves));
     EXPECT_EQ((*leaves)[0].leaves, 0u);
     EXPECT_EQ((*leaves)[2].leaves, 128u);
+    const auto instances = parse_instances_sweep("baked,shared");
+    ASSERT_TRUE(bool(instances));
+    EXPECT_TRUE((*instances)[0].baked);
+    EXPECT_FALSE((*instances)[1].baked);
     const auto memory = parse_memory_sweep("all,12M,50%");
     ASSERT_TRUE(bool(memory));
     EXPECT_EQ((*memory)[0].memory.of(1000), 0u);
@@ -117,6 +124,10 @@ TEST(BenchArguments, SayWhatIsWrong) {
         {{.leaves = "8,0"}, "--leaves needs a whole number from 1 to 1000000, not '0'"},
         {{.leaves = "8,,9"}, "--leaves has an empty item"},
         {{.leaves = "8,9,8"}, "--leaves has '8' twice"},
+        {{.instances = "kept"}, "--instances"},
+        {{.instances = "baked,baked"}, "--instances has 'baked' twice"},
+        {{.scenes = {"a.ovc"}, .instances = "baked", .host_memory = "2G"},
+         "--instances means nothing with"},
         {{.gpu_memory = "abc"}, "--gpu-memory: 'abc' is no memory size"},
         {{.workloads = "primary,shadows"}, "did you mean 'shadow'?"},
         {{.sweep = "rays", .workloads = "primary"}, "measured itself, without --workloads"},

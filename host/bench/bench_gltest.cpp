@@ -83,6 +83,24 @@ TEST(BenchCommand, AnswersAreTheSameUnderABudgetOfHostMemory) {
     std::filesystem::remove(file);
 }
 
+TEST(BenchCommand, InstancesAnswerAlikeSharedOrBaked) {
+    if (!there_is_a_device())
+        GTEST_SKIP() << "no device for the plugin";
+    const nlohmann::json document =
+        bench({"fractal-8", "--only", "certified-compute", "--size", "64x48", "--repeats", "1",
+               "--instances", "baked,shared"});
+    const auto& scene = document["scenes"][0];
+    ASSERT_EQ(scene["contenders"].size(), 2u);
+    EXPECT_EQ(scene["contenders"][0]["label"], "certified-compute, baked");
+    EXPECT_GT(scene["contenders"][0]["level2_bytes"].get<uint64_t>(),
+              3 * scene["contenders"][1]["level2_bytes"].get<uint64_t>());
+    std::map<std::string, std::string> checksums; // by workload
+    for (const auto& m : scene["measurements"])
+        EXPECT_EQ(checksums.try_emplace(m["workload"], m["checksum"]).first->second, m["checksum"])
+            << m["workload"];
+    EXPECT_EQ(checksums.size(), 4u);
+}
+
 TEST(BenchCommand, GivesABudgetAsAShareOfThePages) {
     if (!there_is_a_device())
         GTEST_SKIP() << "no device for the plugin";

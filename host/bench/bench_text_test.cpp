@@ -25,9 +25,10 @@ BenchResult example_result() {
     result.repeats = 3;
     result.complete = true;
     result.workloads = {"primary", "frame"};
-    const Result<std::vector<Contender>> contenders = choose_contenders(
-        std::vector<std::string>{"certified", "fast", "cpu", "embree"},
-        std::vector<LeavesChoice>{{1, "1"}, {8, "8"}}, std::vector<BudgetChoice>(1));
+    const Result<std::vector<Contender>> contenders =
+        choose_contenders(std::vector<std::string>{"certified", "fast", "cpu", "embree"},
+                          std::vector<LeavesChoice>{{1, "1"}, {8, "8"}},
+                          std::vector<BudgetChoice>(1), std::vector<InstancesChoice>(1));
     EXPECT_TRUE(bool(contenders));
     for (const Contender& contender : *contenders) {
         result.entrants.push_back({contender, "a renderer", {}, {}});

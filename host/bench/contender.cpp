@@ -44,6 +44,8 @@ std::string Contender::label() const {
         text += fmt::format(", {} {}", leaves.words, leaves.words == "1" ? "leaf" : "leaves");
     if (!budget.words.empty())
         text += fmt::format(", budget {}", budget.words);
+    if (!instances.words.empty())
+        text += fmt::format(", {}", instances.words);
     return text;
 }
 
@@ -82,8 +84,9 @@ static bool wanted(const Contender& contender, std::span<const std::string> only
 
 Result<std::vector<Contender>> choose_contenders(std::span<const std::string> only,
                                                  std::span<const LeavesChoice> leaves,
-                                                 std::span<const BudgetChoice> budgets) {
-    assert(!leaves.empty() && !budgets.empty());
+                                                 std::span<const BudgetChoice> budgets,
+                                                 std::span<const InstancesChoice> instances) {
+    assert(!leaves.empty() && !budgets.empty() && !instances.empty());
     if (const Result<Done> known = check_names(only); !known)
         return known.error();
     std::vector<Contender> chosen;
@@ -95,11 +98,13 @@ Result<std::vector<Contender>> choose_contenders(std::span<const std::string> on
             continue;
         }
         for (const LeavesChoice& leaf_choice : leaves)
-            for (const BudgetChoice& budget : budgets) {
-                contender.leaves = leaf_choice;
-                contender.budget = budget;
-                chosen.push_back(contender);
-            }
+            for (const BudgetChoice& budget : budgets)
+                for (const InstancesChoice& kept : instances) {
+                    contender.leaves = leaf_choice;
+                    contender.budget = budget;
+                    contender.instances = kept;
+                    chosen.push_back(contender);
+                }
     }
     return chosen;
 }
@@ -135,15 +140,48 @@ Result<std::unique_ptr<Backend>> ContenderBuilder::build(const Contender& conten
 
 /// Returns the bytes of all pages, measured by building the scene with these options and the
 /// device's default budget. Each number of leaves is built once.
-Result<uint64_t> ContenderBuilder::all_pages_bytes(BackendOptions options) {
-    const auto known = pages_bytes_.find(options.leaves);
+Result<uint64_t> ContenderBuilder::all_pages_bytes(const Contender& contender,
+                                                   BackendOptions options) {
+    const std::pair key(contender.instances.baked, options.leaves);
+    const auto known = pages_bytes_.find(key);
     if (known != pages_bytes_.end())
         return known->second;
     options.gpu_memory = {};
-    const Result<std::unique_ptr<Backend>> whole = make_backend(soup_, options, log_);
+    const Result<const Soup*> soup = soup_for(contender);
+    if (!soup)
+        return soup.error();
+    const Result<std::unique_ptr<Backend>> whole = make_backend(**soup, options, log_);
     if (!whole)
         return whole.error();
-    return pages_bytes_[options.leaves] = (*whole)->statistics().level2_bytes;
+    return pages_bytes_[key] = (*whole)->statistics().level2_bytes;
+}
+
+/// Returns the same triangles where no two chunks show the same mesh: each placed corner in double.
+static Soup baked(const Soup& soup) {
+    Soup result;
+    for (const Chunk& chunk : soup.chunks) {
+        std::vector<dvec3> corners;
+        corners.reserve(3 * size_t(chunk.size()));
+        for (uint32_t prim = 0; prim < chunk.size(); ++prim)
+            for (const dvec3& corner : chunk.triangle(prim))
+                corners.push_back(corner);
+        result.chunks.push_back(Chunk::owning_doubles(dvec3(0), std::move(corners)));
+        result.chunks.back().set_mask(chunk.mask());
+    }
+    return result;
+}
+
+/// Returns the scene as the contender is to have it.
+Result<const Soup*> ContenderBuilder::soup_for(const Contender& contender) {
+    if (!contender.instances.baked)
+        return &soup_;
+    if (soup_.triangle_count() > kMaxBakedTriangles)
+        return Error{fmt::format("found {} triangles, with those that are placed again, expected "
+                                 "at most {} for --instances baked",
+                                 soup_.triangle_count(), kMaxBakedTriangles)};
+    if (!baked_)
+        baked_ = baked(soup_);
+    return &*baked_;
 }
 
 Result<std::unique_ptr<Backend>> ContenderBuilder::build_on_gpu(const Contender& contender) {
@@ -161,13 +199,14 @@ Result<std::unique_ptr<Backend>> ContenderBuilder::build_on_gpu(const Contender&
     options.host_bytes = on_disk_ ? on_disk_->budget_bytes() : 0;
     options.host_shares = host_shares_;
     if (contender.budget.pages_share > 0) {
-        const Result<uint64_t> bytes = all_pages_bytes(options);
+        const Result<uint64_t> bytes = all_pages_bytes(contender, options);
         if (!bytes)
             return bytes.error();
         options.gpu_memory.bytes =
             std::max(uint64_t(1), uint64_t(contender.budget.pages_share * double(*bytes)));
     }
-    return make_backend(soup_, options, log_);
+    const Result<const Soup*> soup = soup_for(contender);
+    return soup ? make_backend(**soup, options, log_) : soup.error();
 }
 
 } // namespace ovc

@@ -9,9 +9,11 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace ovc {
@@ -22,6 +24,10 @@ enum class ContenderKind { TwoLevel, Thesis, CpuKdTree, FloatKdTree, Embree };
 /// empty where the user asked for none.
 struct LeavesChoice {
     uint32_t leaves = 0;
+    std::string words;
+};
+struct InstancesChoice {
+    bool baked = false; // as triangles of their own, instead of sharing pages
     std::string words;
 };
 struct BudgetChoice {
@@ -39,6 +45,7 @@ struct Contender {
     EmbreeMode embree = EmbreeMode::Medium;
     LeavesChoice leaves;
     BudgetChoice budget;
+    InstancesChoice instances;
     BackendKind backend = BackendKind::TwoLevel; // read where on_gpu()
 
     /// Returns the name with the values of its sweep: "certified-fragment, 8 leaves, budget 12M".
@@ -52,14 +59,18 @@ std::vector<std::string_view> contender_names();
 
 /// Returns the contenders that `only` asks for, by names or their first words ("certified",
 /// "embree"). An empty `only` asks for all that this program was built with, except the systems of
-/// the thesis, some of which take long to build. Each two-level contender comes once for each pair
-/// of leaves and budget; both lists have at least one value (asserted). Error: an unknown name.
+/// the thesis, some of which take long to build. Each two-level contender comes once for each
+/// combination of values; all lists have at least one (asserted). Error: an unknown name.
 Result<std::vector<Contender>> choose_contenders(std::span<const std::string> only,
                                                  std::span<const LeavesChoice> leaves,
-                                                 std::span<const BudgetChoice> budgets);
+                                                 std::span<const BudgetChoice> budgets,
+                                                 std::span<const InstancesChoice> instances);
 
 /// The max triangles of a KD-tree on the CPU, which holds each placed one, in some 150 bytes.
 inline constexpr uint64_t kMaxCpuTreeTriangles = 100'000'000;
+
+/// The max triangles of a scene whose instances are baked, in 72 bytes each.
+inline constexpr uint64_t kMaxBakedTriangles = 200'000'000;
 
 /// Builds contenders over one soup, which must outlive them.
 class ContenderBuilder {
@@ -81,9 +92,11 @@ public:
 
 private:
     Result<std::unique_ptr<Backend>> build_on_gpu(const Contender& contender);
-    Result<uint64_t> all_pages_bytes(BackendOptions options);
+    Result<uint64_t> all_pages_bytes(const Contender& contender, BackendOptions options);
+    Result<const Soup*> soup_for(const Contender& contender);
 
     const Soup& soup_;
+    std::optional<Soup> baked_; // made when a contender wants it
     const KdTree* tree_;
     double tree_seconds_;
     std::string device_;
@@ -91,7 +104,7 @@ private:
     ovc_ranks_own ranks_own_ = OVC_RANKS_OWN_AUTO;
     const SceneOnDisk* on_disk_ = nullptr;
     uint32_t host_shares_ = 1;
-    std::map<uint32_t, uint64_t> pages_bytes_; // by leaves
+    std::map<std::pair<bool, uint32_t>, uint64_t> pages_bytes_; // by whether baked, and leaves
 };
 
 /// Returns whether this program was built with Embree.

@@ -37,6 +37,8 @@ constexpr const char* kBenchExamples = R"(Examples:
       two scenes; the plugin certified, by both kernels, and Embree in all its qualities
   overcast bench --only certified-compute --leaves 1,8,32,128
       what leaves cost: each row says its time to the first row's
+  overcast bench fractal-100 --only certified-compute --instances baked,shared
+      what it costs that instances share their mesh's pages
   overcast bench plants --only certified --resident all,30%
       what a budget costs that holds 30 % of the pages
   overcast bench scan.ovc --host-memory 2G --repeats 3

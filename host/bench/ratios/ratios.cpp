@@ -76,7 +76,7 @@ Ratios ratios_of(const BenchResult& result, const Measurement& m) {
     const Measurement* fast = find(result, m, [&](const Contender& c) {
         return c.kind == self.kind && c.precision == OVC_PRECISION_FAST &&
                c.kernel == self.kernel && c.leaves.words == self.leaves.words &&
-               c.budget.words == self.budget.words;
+               c.budget.words == self.budget.words && c.instances.words == self.instances.words;
     });
     if (fast) {
         ratios.call_time_to_fast = quotient(call_seconds(m), call_seconds(*fast));

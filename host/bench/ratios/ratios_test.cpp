@@ -9,7 +9,8 @@ namespace {
 
 Contender named(std::string_view name) {
     const std::vector<std::string> only{std::string(name)};
-    return choose_contenders(only, std::vector<LeavesChoice>(1), std::vector<BudgetChoice>(1))
+    return choose_contenders(only, std::vector<LeavesChoice>(1), std::vector<BudgetChoice>(1),
+                             std::vector<InstancesChoice>(1))
         ->front();
 }
 
