@@ -3,8 +3,10 @@
 // library on the same rays, by turns, for docs/benchmarks.md. Prints the median and the quartiles
 // of the ratio of each pair, of the seconds from call to return and of the CPU time, which other
 // programs change less. Edges: rays from the camera at corners and points of sides. Answers must be
-// the same bits.
+// the same bits. With --shared the camera is the scene's own, and instances share their mesh's
+// pages, as `overcast` hands them over; else they are triangles of their own.
 #include "core/system/stopwatch.h"
+#include "host/bench/ray_sets.h"
 #include "host/scene/scene_source.h"
 #include "host/scene/scene_summary.h"
 #include "plugin/overcast.h"
@@ -30,7 +32,7 @@ namespace {
 /// A scene in one of the libraries. Structs have the sizes of the first version of the ABI.
 class Side {
 public:
-    Side(const char* path, const Soup& soup) {
+    Side(const char* path, const Soup& soup, bool shared) {
         void* const library = dlopen(path, RTLD_NOW | RTLD_LOCAL);
         if (!library)
             give_up(dlerror());
@@ -40,19 +42,8 @@ public:
             give_up(fmt::format("{} is no library of Overcast of this version", path));
         must(api_->create_device(nullptr, &device_));
         must(api_->create_scene(device_, nullptr, &scene_));
-        std::vector<double> positions;
-        for (size_t i = 0; i < soup.chunks.size(); ++i) {
-            const Chunk& chunk = soup.chunks[i];
-            positions.clear();
-            for (uint32_t prim = 0; prim < chunk.size(); ++prim)
-                for (const dvec3& corner : chunk.triangle(prim))
-                    positions.insert(positions.end(), {corner.x, corner.y, corner.z});
-            ovc_mesh mesh{};
-            mesh.struct_size = offsetof(ovc_mesh, mask);
-            mesh.positions_double = positions.data();
-            mesh.vertex_count = positions.size() / 3;
-            must(api_->add_mesh(scene_, &mesh, nullptr));
-        }
+        for (const Chunk& chunk : soup.chunks)
+            shared ? add_shared(chunk) : add_baked(chunk);
         must(api_->commit(scene_));
     }
 
@@ -64,6 +55,35 @@ public:
     }
 
 private:
+    static ovc_mesh no_mesh() {
+        ovc_mesh mesh{};
+        mesh.struct_size = offsetof(ovc_mesh, mask);
+        return mesh;
+    }
+    void add_baked(const Chunk& chunk) const {
+        std::vector<double> positions;
+        for (uint32_t prim = 0; prim < chunk.size(); ++prim)
+            for (const dvec3& corner : chunk.triangle(prim))
+                positions.insert(positions.end(), {corner.x, corner.y, corner.z});
+        ovc_mesh mesh = no_mesh();
+        mesh.positions_double = positions.data();
+        mesh.vertex_count = positions.size() / 3;
+        must(api_->add_mesh(scene_, &mesh, nullptr));
+    }
+    /// The soup keeps the corners for as long as the scene lives.
+    void add_shared(const Chunk& chunk) const {
+        ovc_mesh mesh = no_mesh();
+        std::copy_n(&chunk.origin().x, 3, mesh.origin);
+        if (chunk.transform())
+            mesh.transform = chunk.transform()->rows[0].data();
+        if (chunk.double_corners().empty())
+            mesh.positions = reinterpret_cast<const float*>(chunk.corners().data());
+        else
+            mesh.positions_double = reinterpret_cast<const double*>(chunk.double_corners().data());
+        mesh.vertex_count = 3 * uint64_t(chunk.size());
+        mesh.flags = OVC_MESH_SHARED;
+        must(api_->add_mesh(scene_, &mesh, nullptr));
+    }
     [[noreturn]] static void give_up(const std::string& why) {
         fmt::print(stderr, "paired_calls: {}\n", why);
         std::exit(1);
@@ -93,6 +113,18 @@ std::vector<ovc_ray> camera_rays(const Box& box, size_t count) {
         const dvec3 on_screen(double(i % width) / double(width) - 0.5,
                               double(i / width) / double(width) - 0.5, 0);
         rays.push_back(ray_from(eye, box.center() + 0.9 * reach * on_screen - eye));
+    }
+    return rays;
+}
+
+/// Returns about so many rays of the scene's own camera, in the order in which pixels are traced.
+std::vector<ovc_ray> own_camera_rays(const Scene& scene, size_t count) {
+    const auto side = uint32_t(std::sqrt(double(count)));
+    std::vector<ovc_ray> rays;
+    for (const Ray& ray :
+         make_primary_set(own_or_framing_camera(scene, side, side), side, side).rays) {
+        rays.push_back(ray_from(ray.org, ray.dir));
+        rays.back().t_max = ray.t_max;
     }
     return rays;
 }
@@ -160,18 +192,21 @@ std::string spread(std::vector<double> ratios) {
 }
 
 /// only: a kind of rays; empty: all.
-Result<Done> run(const char* before, const char* after, const std::string& name, size_t count,
-                 int repeats, std::string_view only) {
+Result<Done> run(const char* before, const char* after, const std::string& name, size_t wanted,
+                 int repeats, std::string_view only, bool shared) {
     const Result<Scene> scene = open_scene(name, standard_error_log(LogLevel::Warning));
     if (!scene)
         return scene.error();
     const Box box = hittable_bounds(scene->soup);
-    const std::array<Side, 2> sides{Side(before, scene->soup), Side(after, scene->soup)};
+    const std::array<Side, 2> sides{Side(before, scene->soup, shared),
+                                    Side(after, scene->soup, shared)};
+    const std::vector<ovc_ray> primary =
+        shared ? own_camera_rays(*scene, wanted) : camera_rays(box, wanted);
+    const size_t count = primary.size();
     std::array<std::vector<ovc_hit>, 2> hits{std::vector<ovc_hit>(count),
                                              std::vector<ovc_hit>(count)};
     std::array<std::vector<uint8_t>, 2> occluded{std::vector<uint8_t>(count),
                                                  std::vector<uint8_t>(count)};
-    const std::vector<ovc_ray> primary = camera_rays(box, count);
     sides[0].intersect(primary, hits[0]);
     const std::vector<ovc_ray> bounced = bounced_rays(box, primary, hits[0]);
 
@@ -219,6 +254,7 @@ int main(int count, char** arguments) {
     size_t rays = 1 << 18;
     int repeats = 101;
     std::string_view only;
+    bool shared = false;
     for (int i = 1; i < count; ++i) {
         const std::string argument = arguments[i];
         if (argument == "--rays" && i + 1 < count)
@@ -227,15 +263,17 @@ int main(int count, char** arguments) {
             repeats = std::max(std::atoi(arguments[++i]), 1);
         else if (argument == "--only" && i + 1 < count)
             only = arguments[++i];
+        else if (argument == "--shared")
+            shared = true;
         else
             names.push_back(arguments[i]);
     }
     if (names.size() != 3) {
         fmt::print(stderr, "Usage: paired_calls BEFORE.so AFTER.so SCENE [--rays N] [--repeats N] "
-                           "[--only primary|diffuse|occlusion|edges]\n");
+                           "[--only primary|diffuse|occlusion|edges] [--shared]\n");
         return 1;
     }
-    const auto done = ovc::run(names[0], names[1], names[2], rays, repeats, only);
+    const auto done = ovc::run(names[0], names[1], names[2], rays, repeats, only, shared);
     if (!done)
         fmt::print(stderr, "paired_calls: {}\n", done.error().message);
     return done ? 0 : 1;

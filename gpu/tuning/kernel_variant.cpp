@@ -113,10 +113,6 @@ ChosenVariants default_variants(const DeviceInfo& device, bool compute) {
     variant.branches = false;
     variant.reads = TexelReads::Images;
     ChosenVariants variants(variant);
-    const bool can_use_textures = device.pool_buffers_by_reads[size_t(TexelReads::Textures)] > 0;
-    for (size_t kind = 0; kind < RayKind::kCount; ++kind)
-        if (RayKind::of(kind).has_portals() && can_use_textures)
-            variants[RayKind::of(kind)].reads = TexelReads::Textures;
     // Lanes that go alike end together, and taking up a ray means to go through the first portal,
     // to which rays among few frames have far to go, unless any hit ends them.
     using enum RayKind::Frames;

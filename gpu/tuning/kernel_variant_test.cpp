@@ -65,18 +65,13 @@ TEST(KernelVariant, RefillsWhereABallotHasRoomForAllLanes) {
     EXPECT_TRUE(refills(default_variants(software())[RayKind{}]));
 }
 
-TEST(KernelVariant, ReadsNoTexturesWhereTheDriverConfusesThem) {
-    const auto reads_textures = [](const DeviceInfo& device) {
-        const ChosenVariants variants = default_variants(device);
-        size_t count = 0;
+TEST(KernelVariant, ReadsImagesOnSoftwareRenderers) {
+    for (const bool compute : {false, true}) {
+        const ChosenVariants variants = default_variants(software(), compute);
         for (size_t kind = 0; kind < RayKind::kCount; ++kind)
-            count += variants[RayKind::of(kind)].reads == TexelReads::Textures;
-        return count;
-    };
-    DeviceInfo device = software();
-    EXPECT_GT(reads_textures(device), 0u);
-    device.pool_buffers_by_reads[size_t(TexelReads::Textures)] = 0; // Workaround::ConfusedTexels
-    EXPECT_EQ(reads_textures(device), 0u);
+            EXPECT_EQ(variants[RayKind::of(kind)].reads, TexelReads::Images)
+                << RayKind::of(kind).text();
+    }
 }
 
 TEST(KernelVariant, ChangesOfSeveralAddUp) {
