@@ -6,6 +6,7 @@
 // the same bits. With --shared the camera is the scene's own, and instances share their mesh's
 // pages, as `overcast` hands them over; else they are triangles of their own.
 #include "core/system/stopwatch.h"
+#include "host/bench/contender.h"
 #include "host/bench/ray_sets.h"
 #include "host/scene/scene_source.h"
 #include "host/scene/scene_summary.h"
@@ -29,10 +30,11 @@
 namespace ovc {
 namespace {
 
-/// A scene in one of the libraries. Structs have the sizes of the first version of the ABI.
+/// A scene in one of the libraries. Structs have the sizes of the first version of the ABI. The
+/// soup keeps its corners while the scene lives.
 class Side {
 public:
-    Side(const char* path, const Soup& soup, bool shared) {
+    Side(const char* path, const Soup& soup) {
         void* const library = dlopen(path, RTLD_NOW | RTLD_LOCAL);
         if (!library)
             give_up(dlerror());
@@ -43,7 +45,7 @@ public:
         must(api_->create_device(nullptr, &device_));
         must(api_->create_scene(device_, nullptr, &scene_));
         for (const Chunk& chunk : soup.chunks)
-            shared ? add_shared(chunk) : add_baked(chunk);
+            add(chunk);
         must(api_->commit(scene_));
     }
 
@@ -55,24 +57,9 @@ public:
     }
 
 private:
-    static ovc_mesh no_mesh() {
+    void add(const Chunk& chunk) const {
         ovc_mesh mesh{};
         mesh.struct_size = offsetof(ovc_mesh, mask);
-        return mesh;
-    }
-    void add_baked(const Chunk& chunk) const {
-        std::vector<double> positions;
-        for (uint32_t prim = 0; prim < chunk.size(); ++prim)
-            for (const dvec3& corner : chunk.triangle(prim))
-                positions.insert(positions.end(), {corner.x, corner.y, corner.z});
-        ovc_mesh mesh = no_mesh();
-        mesh.positions_double = positions.data();
-        mesh.vertex_count = positions.size() / 3;
-        must(api_->add_mesh(scene_, &mesh, nullptr));
-    }
-    /// The soup keeps the corners for as long as the scene lives.
-    void add_shared(const Chunk& chunk) const {
-        ovc_mesh mesh = no_mesh();
         std::copy_n(&chunk.origin().x, 3, mesh.origin);
         if (chunk.transform())
             mesh.transform = chunk.transform()->rows[0].data();
@@ -122,10 +109,11 @@ std::vector<ovc_ray> own_camera_rays(const Scene& scene, size_t count) {
     const auto side = uint32_t(std::sqrt(double(count)));
     std::vector<ovc_ray> rays;
     for (const Ray& ray :
-         make_primary_set(own_or_framing_camera(scene, side, side), side, side).rays) {
-        rays.push_back(ray_from(ray.org, ray.dir));
-        rays.back().t_max = ray.t_max;
-    }
+         make_primary_set(own_or_framing_camera(scene, side, side), side, side).rays)
+        rays.push_back({{ray.org.x, ray.org.y, ray.org.z},
+                        ray.t_min,
+                        {ray.dir.x, ray.dir.y, ray.dir.z},
+                        ray.t_max});
     return rays;
 }
 
@@ -198,8 +186,9 @@ Result<Done> run(const char* before, const char* after, const std::string& name,
     if (!scene)
         return scene.error();
     const Box box = hittable_bounds(scene->soup);
-    const std::array<Side, 2> sides{Side(before, scene->soup, shared),
-                                    Side(after, scene->soup, shared)};
+    const Soup baked_soup = shared ? Soup{} : baked(scene->soup);
+    const Soup& soup = shared ? scene->soup : baked_soup;
+    const std::array<Side, 2> sides{Side(before, soup), Side(after, soup)};
     const std::vector<ovc_ray> primary =
         shared ? own_camera_rays(*scene, wanted) : camera_rays(box, wanted);
     const size_t count = primary.size();

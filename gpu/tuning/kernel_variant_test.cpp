@@ -95,6 +95,9 @@ TEST(KernelVariant, ReadsNoMoreThanTheDriverLetsIt) {
     variant.reads = TexelReads::StorageBuffers;
     EXPECT_TRUE(can_read(device, variant, 4, 1 << 20));
     EXPECT_FALSE(can_read(device, variant, 4, 1 << 21));
+    device.pool_buffers_by_reads[size_t(TexelReads::Textures)] = 0; // Workaround::ConfusedTexels
+    variant.reads = TexelReads::Textures;
+    EXPECT_FALSE(can_read(device, variant, 1, 1 << 10));
 }
 
 } // namespace

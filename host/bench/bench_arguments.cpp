@@ -22,7 +22,7 @@ static constexpr const char* kDefaultScene = "knot";
 static constexpr std::string_view kAll = "all";
 static constexpr std::string_view kAuto = "auto";
 
-/// Whether instances are baked: the second.
+/// In the order of false and true for InstancesChoice::baked.
 static constexpr std::array<std::string_view, 2> kInstances = {"shared", "baked"};
 
 /// In the order of SweepOver.

@@ -99,10 +99,10 @@ Result<std::vector<Contender>> choose_contenders(std::span<const std::string> on
         }
         for (const LeavesChoice& leaf_choice : leaves)
             for (const BudgetChoice& budget : budgets)
-                for (const InstancesChoice& kept : instances) {
+                for (const InstancesChoice& instances_choice : instances) {
                     contender.leaves = leaf_choice;
                     contender.budget = budget;
-                    contender.instances = kept;
+                    contender.instances = instances_choice;
                     chosen.push_back(contender);
                 }
     }
@@ -138,6 +138,20 @@ Result<std::unique_ptr<Backend>> ContenderBuilder::build(const Contender& conten
     return make_cpu_backend(soup_, *tree_, tree_seconds_);
 }
 
+Soup baked(const Soup& soup) {
+    Soup result;
+    for (const Chunk& chunk : soup.chunks) {
+        std::vector<dvec3> corners;
+        corners.reserve(3 * size_t(chunk.size()));
+        for (uint32_t prim = 0; prim < chunk.size(); ++prim)
+            for (const dvec3& corner : chunk.triangle(prim))
+                corners.push_back(corner);
+        result.chunks.push_back(Chunk::owning_doubles(dvec3(0), std::move(corners)));
+        result.chunks.back().set_mask(chunk.mask());
+    }
+    return result;
+}
+
 /// Returns the bytes of all pages, measured by building the scene with these options and the
 /// device's default budget. Each number of leaves is built once.
 Result<uint64_t> ContenderBuilder::all_pages_bytes(const Contender& contender,
@@ -156,25 +170,12 @@ Result<uint64_t> ContenderBuilder::all_pages_bytes(const Contender& contender,
     return pages_bytes_[key] = (*whole)->statistics().level2_bytes;
 }
 
-/// Returns the same triangles where no two chunks show the same mesh: each placed corner in double.
-static Soup baked(const Soup& soup) {
-    Soup result;
-    for (const Chunk& chunk : soup.chunks) {
-        std::vector<dvec3> corners;
-        corners.reserve(3 * size_t(chunk.size()));
-        for (uint32_t prim = 0; prim < chunk.size(); ++prim)
-            for (const dvec3& corner : chunk.triangle(prim))
-                corners.push_back(corner);
-        result.chunks.push_back(Chunk::owning_doubles(dvec3(0), std::move(corners)));
-        result.chunks.back().set_mask(chunk.mask());
-    }
-    return result;
-}
-
-/// Returns the scene as the contender is to have it.
+/// Returns the scene as the contender is to have it. Error: baked, in 72 bytes a triangle, it would
+/// be too large.
 Result<const Soup*> ContenderBuilder::soup_for(const Contender& contender) {
     if (!contender.instances.baked)
         return &soup_;
+    constexpr uint64_t kMaxBakedTriangles = 200'000'000;
     if (soup_.triangle_count() > kMaxBakedTriangles)
         return Error{fmt::format("found {} triangles, with those that are placed again, expected "
                                  "at most {} for --instances baked",

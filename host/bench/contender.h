@@ -69,8 +69,9 @@ Result<std::vector<Contender>> choose_contenders(std::span<const std::string> on
 /// The max triangles of a KD-tree on the CPU, which holds each placed one, in some 150 bytes.
 inline constexpr uint64_t kMaxCpuTreeTriangles = 100'000'000;
 
-/// The max triangles of a scene whose instances are baked, in 72 bytes each.
-inline constexpr uint64_t kMaxBakedTriangles = 200'000'000;
+/// Returns a soup of the same triangles, by the same ids, in which each chunk has corners of its
+/// own: those of its placed triangles, in double.
+Soup baked(const Soup& soup);
 
 /// Builds contenders over one soup, which must outlive them.
 class ContenderBuilder {
