@@ -58,7 +58,7 @@ inline constexpr std::array<WorkaroundEntry, 8> kWorkarounds{{
      "ShaderCache.AFullDiskIsToldBeforeTheDriverCrashesOnIt"},
     {Workaround::ConfusedTexels, "confused-texels", "softpipe", "",
      "takes one texel of a buffer texture for another where it has more than 16,384",
-     "kernels read images or storage buffers, unless a variant that reads textures is named",
+     "kernels read images or storage buffers, and a variant that reads textures is refused",
      "KernelVariant.ReadsNoMoreThanTheDriverLetsIt"},
 }};
 

@@ -261,13 +261,16 @@ Moved Tracer::bring(std::span<const uint32_t> wanted, const GivePage& give) {
     return moved;
 }
 
-bool Tracer::can_run(const KernelVariant& variant) const {
+bool Tracer::can_read_as(const KernelVariant& variant) const {
     const PoolLayout& layout = pool_.layout();
     uint64_t largest = slots_[0].ray_buffer.bytes();
     for (uint32_t i = 0; i < layout.count(); ++i)
         largest = std::max(largest, layout.bytes_of(i));
-    return can_read(device_, variant, layout.count(), largest) &&
-           (!variant.float_pairs || takes_float_pairs());
+    return can_read(device_, variant, layout.count(), largest);
+}
+
+bool Tracer::can_run(const KernelVariant& variant) const {
+    return can_read_as(variant) && (!variant.float_pairs || takes_float_pairs());
 }
 
 /// Whether kernels can change frames in pairs of floats. Rays that wait cannot: their resume keys

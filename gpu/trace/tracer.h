@@ -125,6 +125,9 @@ public:
     /// The kind of the rays whose answers were collected last.
     RayKind ray_kind() const { return kind_; }
 
+    /// Whether the device can read the scene in the variant's way. A kernel that reads it all the
+    /// same may answer wrongly.
+    bool can_read_as(const KernelVariant& variant) const;
     /// Whether the device and the scene suit the variant.
     bool can_run(const KernelVariant& variant) const;
     /// Begins to compile the kernel for rays of that kind as another variant; is_ready() tells

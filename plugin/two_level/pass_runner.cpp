@@ -89,23 +89,34 @@ Result<SharedBudget::Use> PassRunner::begin_use(BuildProgress* progress) {
     return use;
 }
 
+/// Makes the tracer that the plan asks for. Called on the context's thread.
+Result<std::unique_ptr<Tracer>> PassRunner::make_tracer(GlState& state) {
+    tracer_.reset();
+    tracer_generation_ = state.generation;
+    if (!state.context.alive())
+        return Error{"the GPU's context is lost", ErrorKind::DeviceLost};
+    Result<std::unique_ptr<Tracer>> made = Tracer::create(
+        plan_, {tracing_.options.certify, variants(state)}, gl_.info(), state.kernels,
+        tracing_.scene.level1.bounds, tracing_.scene.pages, tracing_.scene.top);
+    if (!made || tracing_.options.variant != VariantChoice::Given)
+        return made;
+    const KernelVariant& variant = tracing_.options.given_variant;
+    if (!(*made)->can_read_as(variant))
+        return Error{format_text("the device cannot read this scene's pages as the kernel variant "
+                                 "'{}' does; expected another of textures, images and storage",
+                                 variant.text()),
+                     ErrorKind::InvalidArgument};
+    if (!(*made)->can_run(variant))
+        say(log_, LogLevel::Warning,
+            "frames are changed in doubles: the device or the scene does not suit float-pairs");
+    return made;
+}
+
 /// Makes the tracer, with a smaller pool where the driver has no room for the plan's.
 Result<Done> PassRunner::open(BuildProgress* progress) {
-    bool suits = true; // the variant that was given
     while (true) {
         Result<std::unique_ptr<Tracer>> made = Error{};
-        gl_.run([&](GlState& state) {
-            tracer_.reset();
-            tracer_generation_ = state.generation;
-            if (state.context.alive())
-                made = Tracer::create(plan_, {tracing_.options.certify, variants(state)},
-                                      gl_.info(), state.kernels, tracing_.scene.level1.bounds,
-                                      tracing_.scene.pages, tracing_.scene.top);
-            else
-                made = Error{"the GPU's context is lost", ErrorKind::DeviceLost};
-            suits = !made || tracing_.options.variant != VariantChoice::Given ||
-                    (*made)->can_run(tracing_.options.given_variant);
-        });
+        gl_.run([&](GlState& state) { made = make_tracer(state); });
         if (made) {
             tracer_ = std::move(*made);
             break;
@@ -127,9 +138,6 @@ Result<Done> PassRunner::open(BuildProgress* progress) {
                         plan_.pool_bytes, smaller));
         plan_.pool_bytes = smaller;
     }
-    if (!suits && tracing_.options.given_variant.float_pairs)
-        say(log_, LogLevel::Warning,
-            "frames are changed in doubles: the device or the scene does not suit float-pairs");
     bring_first(progress);
     gpu_bytes_ = tracer_->ledger().in_use;
     tracing_.statistics.gpu_peak_bytes =

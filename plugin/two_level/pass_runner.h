@@ -131,6 +131,7 @@ private:
     void demand(const MemoryPlan& whole);
     MemoryPlan plan_within(uint64_t bytes) const;
     Result<bool> update_in_place(const MemoryPlan& anew, const PageChanges& changes);
+    Result<std::unique_ptr<Tracer>> make_tracer(GlState& state);
     Result<Done> open(BuildProgress* progress);
     void close();
     void bring_first(BuildProgress* progress);
