@@ -3,15 +3,14 @@
  *
  * Load libovercast.so, look up ovc_get_api, ask for OVC_ABI_VERSION, and call through the table. C99.
  *
- * Every call returns an ovc_result; on anything but OVC_OK, last_error() has one sentence. Nothing throws, exits, or keeps a
- * pointer of the caller's after it returns, except the positions of a mesh added with OVC_MESH_SHARED. The caller owns every
- * buffer. Structs that go in begin with struct_size = sizeof(the struct); every other field means "default" when zero. Structs
+ * Every call returns an ovc_result; on anything but OVC_OK, last_error() has one sentence. Nothing throws or exits. The caller owns
+ * every buffer, and none is used after the call returns, except shared positions, what is saved, the functions that are handed in
+ * with their user pointers, and the buffers of a submitted call (docs/reference/abi.md, "Lifetimes"). Structs that go in begin with struct_size = sizeof(the struct); every other field means "default" when zero. Structs
  * and the table only ever grow at their end: the struct_size of an earlier header is fine. The manual is docs/reference/abi.md.
  * Calls may come from any thread, of 256 KiB of stack at least; calls on one scene wait their turn, first come, first served. The
- * caller's GL context, floating-point state and environment are left alone, but for prepare_process(): each device has a thread of
- * its own. The functions that
- * a caller hands in for errors, logs, progress and what is saved may call last_error and nothing else. In a process that is forked,
- * the parent's handles are errors. */
+ * caller's GL context, floating-point state and environment are left alone, except by prepare_process(): each device has a thread of
+ * its own. The functions that a caller hands in for errors, logs, progress and what is saved may call last_error and nothing else.
+ * In a process that is forked, the parent's handles are errors. */
 #ifndef OVERCAST_H
 #define OVERCAST_H
 
@@ -130,7 +129,7 @@ typedef struct ovc_device_info {
 } ovc_device_info;
 
 typedef enum ovc_precision {
-    OVC_PRECISION_CERTIFIED = 0, /* the answer of double precision, bit for bit: the kernel proves, doubles decide the rest */
+    OVC_PRECISION_CERTIFIED = 0, /* the exact answer for doubles, each number rounded once: the kernel proves, the CPU decides the rest */
     OVC_PRECISION_FAST = 1       /* the kernel's own t, u, v in float32; near edges and near ties another triangle may be named */
 } ovc_precision;
 

@@ -43,16 +43,17 @@ void BackendArguments::add_to(CLI::App& app, const char* host_memory_help) {
            "CPU: thesis-two-level")
         ->group(group)
         ->type_name(choice_names(kBackends));
-    app.add_option("--gpu-memory", gpu_memory,
-                   "The most GPU memory to use: 256M, 1.5GiB, or 50% of what the device has free; "
-                   "default: what the "
-                   "driver reports, less headroom")
+    app.add_option(
+           "--gpu-memory", gpu_memory,
+           "Max GPU memory: 256M, 1.5GiB, or 50% of what the device has free; default: seven "
+           "eighths of that")
         ->group(group)
         ->type_name("SIZE");
     app.add_option("--host-memory", host_memory, host_memory_help)->group(group)->type_name("SIZE");
     CLI::Option* per_leaf = app.add_option("--leaf-triangles", leaf_triangles,
-                                           "The most triangles of a level-1 leaf; default: "
-                                           "a tenth; all where they fit and rays gain")
+                                           "Max triangles of a level-1 leaf; default: a tenth "
+                                           "of the scene's, or all where one leaf fits the "
+                                           "budget and is faster")
                                 ->group(group)
                                 ->type_name("N");
     app.add_option("--leaves", leaves, "Instead: about so many level-1 leaves")
@@ -64,9 +65,8 @@ void BackendArguments::add_to(CLI::App& app, const char* host_memory_help) {
                    "else the software renderer")
         ->group(group)
         ->type_name("NAME");
-    app.add_option(
-           "--precision", precision,
-           "certified (the default: the answer of double precision) or fast (float32's own)")
+    app.add_option("--precision", precision,
+                   "certified (the default: the exact answer, in doubles) or fast (float32's own)")
         ->group(group)
         ->type_name(choice_names(kPrecisions));
     app.add_option("--kernel", kernel, "auto, fragment or compute; they answer alike")

@@ -18,7 +18,7 @@ static constexpr Command kCommands[] = {
     {"render", "Render a picture of a scene", make_render},
     {"info", "Say what a scene consists of and needs", make_info},
     {"trace", "Answer rays from standard input", make_trace},
-    {"convert", "Write a scene as .ply or .obj", make_convert},
+    {"convert", "Write a scene as .ovc, which starts at once, or as .ply or .obj", make_convert},
     {"devices", "List the GPUs and software renderers there are", make_devices},
     {"doctor", "Say what a device lacks on this machine, and what to do", make_doctor},
     {"scenes", "List the generated test scenes", make_scenes},
@@ -106,16 +106,17 @@ Result<int> run_command(const Arguments& arguments) {
     if (name == "--version" || name == "-V" || name == "version") {
         fmt::print("overcast {}\n", version_text());
         if (ScenePictures::library_is_there())
-            fmt::print("with {}: scenes show their pictures\n", kTextureLibrary);
+            fmt::print("with {}: surfaces show image textures\n", kTextureLibrary);
         else
-            fmt::print("without {}: scenes are rendered without their pictures; it is built where "
-                       "OpenImageIO is installed (Debian: libopenimageio-dev)\n",
+            fmt::print("without {}: surfaces show no image textures; it is built where OpenImageIO "
+                       "is installed (Debian: libopenimageio-dev)\n",
                        kTextureLibrary);
-        if (!Ranks::library_is_there())
-            fmt::print(
-                "without {}: mpirun cannot share work out between processes; it is built where "
-                "MPI is installed (Debian: libopenmpi-dev)\n",
-                kRankedProduct);
+        if (Ranks::library_is_there())
+            fmt::print("with {}: processes under mpirun share the work\n", kRankedProduct);
+        else
+            fmt::print("without {}: processes under mpirun cannot share the work; it is built "
+                       "where MPI is installed (Debian: libopenmpi-dev)\n",
+                       kRankedProduct);
         return kExitOk;
     }
     return run_named(name, {arguments.begin() + 1, arguments.end()});

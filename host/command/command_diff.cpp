@@ -46,7 +46,10 @@ struct LimitWords {
 
     /// name: fail or warn; code: the exit code when the limit is exceeded.
     void add_to(CLI::App& app, const std::string& name, Verdict code) {
-        app.add_option("--" + name, each, "How far apart two pixels may be; default: 1e-6")
+        app.add_option("--" + name, each,
+                       fmt::format("Pixels that are farther apart than this count for "
+                                   "--{}percent; default: 1e-6",
+                                   name))
             ->type_name("X");
         app.add_option(
                "--" + name + "percent", percent,

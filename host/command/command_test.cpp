@@ -416,7 +416,8 @@ TEST_F(CommandTest, HelpAndVersionAreWordsToo) {
     EXPECT_EQ(printed({"version"}), printed({"--version"}));
     EXPECT_EQ(printed({"-V"}), printed({"--version"}));
     EXPECT_THAT(printed({"--version"}),
-                testing::ContainsRegex("\nwith(out)? libovercast-textures.so: scenes "));
+                testing::ContainsRegex("\nwith(out)? libovercast-textures.so: surfaces show "
+                                       ".*\nwith(out)? libovercast-mpi.so: processes "));
 }
 
 TEST_F(CommandTest, ConvertSaysWhatItLeavesOut) {

@@ -55,16 +55,19 @@ class DebianPackage(Tree, unittest.TestCase):
         for script in ("postinst", "prerm"):
             run("sh", "-n", control / script)
 
-    def test_the_tutorials_command_builds_its_example(self):
+    def test_the_tutorials_commands_build_its_examples(self):
         tutorial = (SOURCE / "docs/guide/tutorial.md").read_text()
-        command = re.search("^(cc .* hills\\.c .*)$", tutorial, re.MULTILINE).group(1)
-        folder = self.folder / "hills"
+        folder = self.folder / "examples"
         shutil.copytree(self.prefix / "share/doc/overcast/examples", folder)
-        run("sh", "-c", command, cwd=folder,
-            environment={"PKG_CONFIG_PATH": str(self.libraries / "pkgconfig")})
-        printed = run(folder / "hills", self.libraries / "libovercast.so.1")
-        self.assertIn("\n".join(line.rstrip() for line in printed.splitlines() if line.strip()),
-                      tutorial)
+        for program, arguments in (("hills.c", [self.libraries / "libovercast.so.1"]),
+                                   ("sunlit.cpp", [])):
+            command = re.search(f"^(c.* {re.escape(program)} .*)$", tutorial, re.MULTILINE).group(1)
+            built = folder / program.split(".")[0]
+            run("sh", "-c", command, cwd=folder,
+                environment={"PKG_CONFIG_PATH": str(self.libraries / "pkgconfig")})
+            printed = run(built, *arguments, environment={"LD_LIBRARY_PATH": str(self.libraries)})
+            self.assertIn("\n".join(line.rstrip() for line in printed.splitlines() if line.strip()),
+                          tutorial)
 
     def test_lintian_finds_nothing(self):
         if not shutil.which("lintian"):
