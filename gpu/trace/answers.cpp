@@ -94,8 +94,6 @@ AnswerWords::AnswerWords(Ledger& ledger, uint32_t rays, bool copied_behind)
       read_back_(read_back_for(rays, copied_behind)) {
     assert(rays == whole_blocks(rays));
     texture_.show(buffer_, GL_R32UI, 0, offset_of(4));
-    // The plane stays like this while all pages are resident, because no answer names a leaf then.
-    fill_plane(3, rays_, OVC_NO_LEAF);
 }
 
 /// offset: in bytes.
@@ -105,16 +103,11 @@ void AnswerWords::fill(uint64_t offset, size_t words, uint32_t word) const {
                               &word);
 }
 
-void AnswerWords::fill_plane(int number, size_t rays, uint32_t word) const {
-    assert(number >= 0 && number < 4 && rays <= rays_);
-    fill(offset_of(number), rays, word);
-}
-
 void AnswerWords::dispatch(GLuint program, size_t rays, size_t group_rays, size_t lane_rays) {
     glProgramUniform1i(program, OVC_LOCATION_PLANE, GLint(rays_));
     glBindImageTexture(OVC_BINDING_ANSWERS, texture_.id(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32UI);
     const size_t all = whole_blocks(rays);
-    fill_plane(0, all, OVC_MISS);
+    fill(offset_of(0), all, OVC_MISS);
     glProgramUniform1i(program, OVC_LOCATION_RAYS, GLint(all));
     if (lane_rays > 0) {
         fill(offset_of(4), 1, 0);
@@ -127,10 +120,10 @@ void AnswerWords::dispatch(GLuint program, size_t rays, size_t group_rays, size_
 }
 
 void AnswerWords::begin_read(size_t rays, bool may_wait) {
+    tells_leaves_ = may_wait;
     if (!read_back_)
         return;
     const size_t all = whole_blocks(rays);
-    tells_leaves_ = may_wait;
     for (int number = 0; number < (may_wait ? 4 : 3); ++number)
         glCopyNamedBufferSubData(buffer_.id(), read_back_->id(), GLintptr(offset_of(number)),
                                  GLintptr(offset_of(number)), GLsizeiptr(all * sizeof(uint32_t)));
@@ -153,9 +146,14 @@ void AnswerWords::read(Answers& answers, size_t slots) {
     uint32_t all = 0;
     for (size_t i = 0; i < slots; ++i)
         all |= answers.names[i];
-    if (all & OVC_SAYS_MORE)
-        for (int k = 0; k < 3; ++k)
-            read_plane(1 + k, slots, answers.more[size_t(k)]);
+    if (!(all & OVC_SAYS_MORE))
+        return;
+    for (int k = 0; k < 2; ++k)
+        read_plane(1 + k, slots, answers.more[size_t(k)]);
+    if (tells_leaves_)
+        read_plane(3, slots, answers.more[2]);
+    else
+        answers.more[2].assign(slots, OVC_NO_LEAF);
 }
 
 /// Reads what was copied behind the pass; of `more` only where any answer of a task says so.

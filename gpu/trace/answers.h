@@ -144,7 +144,6 @@ public:
 private:
     uint64_t offset_of(int number) const { return uint64_t(number) * rays_ * sizeof(uint32_t); }
     void fill(uint64_t offset, size_t words, uint32_t word) const;
-    void fill_plane(int number, size_t rays, uint32_t word) const;
     void read_plane(int number, size_t slots, std::vector<uint32_t>& to) const;
     void read_copied(Answers& answers, size_t slots);
 
@@ -152,7 +151,7 @@ private:
     gl::Buffer buffer_;
     gl::BufferTexture texture_;
     std::optional<ReadBack> read_back_;
-    bool tells_leaves_ = true; // the plane of leaves is copied behind the pass
+    bool tells_leaves_ = true; // else the kernel leaves the plane of leaves as it was
 };
 
 } // namespace ovc

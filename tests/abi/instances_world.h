@@ -148,10 +148,11 @@ public:
 
     void commit() { ASSERT_EQ(api().commit(scene.get()), OVC_OK) << error(); }
 
-    std::vector<Hit> intersect(const std::vector<Ray>& rays) const {
+    std::vector<Hit> intersect(const std::vector<Ray>& rays,
+                               const ovc_query* query = nullptr) const {
         std::vector<Hit> hits(rays.size());
         EXPECT_EQ(api().intersect(scene.get(), reinterpret_cast<const ovc_ray*>(rays.data()),
-                                  rays.size(), reinterpret_cast<ovc_hit*>(hits.data()), nullptr),
+                                  rays.size(), reinterpret_cast<ovc_hit*>(hits.data()), query),
                   OVC_OK)
             << error();
         return hits;

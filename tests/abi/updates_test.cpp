@@ -285,6 +285,30 @@ TEST_F(Updates, LeaveOnePartOfAWideScene) {
     expect_brute_force(w, rays_at(w.expected, 200, 4), 2, /* most_hit= */ false);
 }
 
+/// Passes before the update named leaves that rays waited for. Those after it name none, for all
+/// pages are resident then. Rays with masks could go on to such leaves.
+TEST_F(Updates, ThatLetAllPagesFitLeaveNoRayWaiting) {
+    config.gpu_memory_bytes = 1 << 20;
+    config.kernel = OVC_KERNEL_COMPUTE;
+    World w = world();
+    test::Random random(6);
+    const uint32_t large = w.add(random_corners<vec3>(random, 20000, 0.05), dvec3(0), nullptr);
+    w.add(random_corners<vec3>(random, 1000, 0.1), dvec3(3, 0, 0), nullptr);
+    w.commit();
+    w.intersect(rays_at(w.expected, 5000, 1));
+    ASSERT_GT(w.statistics().queued_rays, 0u);
+    w.remove(large);
+    w.commit();
+    ASSERT_EQ(w.statistics().updates, 1u);
+    const std::vector<Ray> rays = rays_at(w.expected, 5000, 2); // a quarter at corners and sides
+    expect_brute_force(w, rays, 2, /* most_hit= */ false);
+    const std::vector<uint32_t> masks(rays.size(), 1);
+    auto query = sized<ovc_query>();
+    query.masks = masks.data();
+    const std::vector<Hit> plain = w.intersect(rays), masked = w.intersect(rays, &query);
+    EXPECT_EQ(std::memcmp(plain.data(), masked.data(), rays.size() * sizeof(Hit)), 0);
+}
+
 /// Another scene of the meshes as they are now takes the bytes.
 TEST_F(Updates, AreSavedUnlessMeshesWereRemoved) {
     test::Random random(3);
