@@ -3,7 +3,6 @@
 #pragma once
 
 #include "core/sieve.h"
-#include "plugin/abi/float_mode.h"
 #include "plugin/abi/host_function.h"
 #include "plugin/overcast.h"
 
@@ -23,9 +22,7 @@ public:
             return false;
         const HostFunction mark;
         const auto* const given = reinterpret_cast<const ovc_hit*>(hits.data());
-        const int stop = filter_(user_, hits.size(), rays.data(), given, keep.data());
-        set_default_float_mode(); // whatever the host's function has left
-        if (stop)
+        if (filter_(user_, hits.size(), rays.data(), given, keep.data()) != 0)
             stopped_ = true;
         return !stopped_;
     }

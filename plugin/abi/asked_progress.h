@@ -13,6 +13,7 @@ namespace ovc {
 
 class AskedProgress final : public TraceWatch {
 public:
+    /// mode: that of the call; it outlives this.
     AskedProgress(const ovc_query& query, HostFloatMode& mode)
         : progress_(query.progress), user_(query.progress_user), mode_(mode) {}
 
@@ -20,10 +21,8 @@ public:
         if (!progress_ || Clock::now() < next_)
             return true;
         next_ = Clock::now() + std::chrono::milliseconds(20);
-        return mode_.call([&] {
-            const HostFunction mark;
-            return progress_(user_, done, "rays") == 0;
-        });
+        const HostFunction mark;
+        return mode_.call([&] { return progress_(user_, done, "rays") == 0; });
     }
 
 private:

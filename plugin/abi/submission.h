@@ -26,7 +26,8 @@ public:
         void set(ovc_result code, std::string text) { *this = {code, std::move(text)}; }
     };
 
-    explicit Submission(const RayCall& call) : call_(call) {}
+    /// mode: of the thread that submits it.
+    Submission(const RayCall& call, const HostFloatMode& mode) : call_(call), mode_(mode) {}
 
     const RayCall& call() const { return call_; }
 
@@ -84,7 +85,7 @@ private:
     }
 
     const RayCall call_;
-    HostFloatMode mode_; // that of the thread that submitted it
+    HostFloatMode mode_;
     AskedProgress asked_{call_.query, mode_};
     std::atomic<double> progress_{0};
     std::atomic<bool> cancelled_{false};

@@ -28,18 +28,19 @@ template <class Check>
 ovc_result submit(ovc_scene scene, const char* name, ovc_ticket* ticket, Check&& check) {
     if (ticket)
         *ticket = nullptr;
+    const HostFloatMode mode;
     return beside_scene(scene, name, [&] {
         if (!ticket)
             invalid(format_text("{}: ticket is NULL", name));
         const RayCall call = check();
-        Structure* structure = SingleRays::Call(scene->single_rays).structure();
-        if (!structure)
+        const SingleRays::Call reading(scene->single_rays); // other threads wait to change it
+        if (!reading.structure())
             not_committed(name);
-        check_notes(call, *structure);
+        check_notes(call, *reading.structure());
         auto made = std::make_unique<ovc_ticket_t>();
         made->device = scene->device;
         made->scene = scene;
-        made->submission = std::make_shared<Submission>(call);
+        made->submission = std::make_shared<Submission>(call, mode);
         if (!scene->submissions.submit(made->submission, [scene](Submission& submission) {
                 do_in_turn(scene, submission);
             }))

@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <utility>
+#include <xmmintrin.h>
 
 namespace ovc {
 namespace {
@@ -161,6 +162,83 @@ TEST_F(HostFunctions, AFilterStopsCallsOfEveryForm) {
     host.more = push_all;
     host.answered = [](void*, ovc_stream, const ovc_stream_answers*) { return 0; };
     stops(api().stream(field, &host), "stream");
+}
+
+constexpr unsigned kNearest = 0x1f80, kUp = 0x5f80, kControl = 0xffc0; // of MXCSR
+
+/// How often a function was called, and how often in a mode that an earlier call had left.
+struct Modes {
+    int calls = 0;
+    int left = 0;
+
+    int leave_another() {
+        ++calls;
+        left += (_mm_getcsr() & kControl) != kNearest;
+        _mm_setcsr(kUp);
+        return 0;
+    }
+};
+
+/// The proofs about rounding hold in the default mode alone.
+TEST_F(HostFunctions, MayLeaveAnotherFloatingPointMode) {
+    Modes progress, written, filtered;
+    auto config = sized<ovc_scene_config>();
+    config.progress = [](void* user, double, const char*) {
+        return static_cast<Modes*>(user)->leave_another();
+    };
+    config.progress_user = &progress;
+    ovc_scene scene = nullptr;
+    ASSERT_EQ(api().create_scene(device.get(), &config, &scene), OVC_OK);
+    const test::AbiScene owner(scene);
+    const ovc_mesh mesh = test::field_mesh();
+    ASSERT_EQ(api().add_mesh(scene, &mesh, nullptr), OVC_OK);
+    ASSERT_EQ(api().commit(scene), OVC_OK);
+    const auto write = [](void* user, const void*, size_t) {
+        return static_cast<Modes*>(user)->leave_another();
+    };
+    ASSERT_EQ(api().save(scene, write, &written), OVC_OK);
+    auto query = sized<ovc_query>();
+    query.filter = [](void* user, size_t, const uint64_t*, const ovc_hit*, uint8_t*) {
+        return static_cast<Modes*>(user)->leave_another();
+    };
+    query.filter_user = &filtered;
+    const ovc_ray ray = test::into_cell(5, 1);
+    uint64_t hits = 0;
+    for (int i = 0; i < 4; ++i)
+        ASSERT_EQ(api().all_hits(scene, &ray, 1, 0, nullptr, &hits, &query), OVC_OK);
+    for (const Modes& modes : {progress, written, filtered}) {
+        EXPECT_GT(modes.calls, 3);
+        EXPECT_EQ(modes.left, 0);
+    }
+    EXPECT_EQ(_mm_getcsr() & kControl, kNearest) << "the mode is the host's outside of calls";
+}
+
+/// Submitted calls, too, ask on in the mode of the thread that made them.
+TEST_F(HostFunctions, AreAskedInTheModeOfTheCall) {
+    const test::Subject subject(device.get());
+    const ovc_ray ray = test::into_cell(5, 1);
+    ovc_hit hit;
+    unsigned found = 0;
+    auto query = sized<ovc_query>();
+    query.progress = [](void* user, double, const char*) {
+        *static_cast<unsigned*>(user) = _mm_getcsr() & kControl;
+        return 0;
+    };
+    query.progress_user = &found;
+    ovc_ticket ticket = nullptr;
+    _mm_setcsr(kUp);
+    const ovc_result called = api().intersect(subject.field, &ray, 1, &hit, &query);
+    const unsigned in_call = std::exchange(found, 0);
+    const ovc_result submitted =
+        api().submit_intersect(subject.field, &ray, 1, &hit, &query, &ticket);
+    const ovc_result waited = api().wait(ticket);
+    _mm_setcsr(kNearest);
+    api().release(ticket);
+    EXPECT_EQ(called, OVC_OK);
+    EXPECT_EQ(submitted, OVC_OK);
+    EXPECT_EQ(waited, OVC_OK);
+    EXPECT_EQ(in_call, kUp & kControl);
+    EXPECT_EQ(found, kUp & kControl);
 }
 
 } // namespace
