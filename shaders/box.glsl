@@ -4,6 +4,12 @@
 // Based on: Ize 2013, "Robust BVH Ray Traversal"; Ylitie et al. 2017 (quantised boxes folded into
 // the ray).
 
+#if OVC_MAY_WAIT
+#define OVC_EXACTLY precise // so that the key of a link has the same bits in every kernel
+#else
+#define OVC_EXACTLY
+#endif
+
 // The ray in grid coordinates: it meets a plane at g, in 65,536ths of a cell from the grid's
 // middle, at t = g * scale + offset.
 struct GridRay {
@@ -15,11 +21,14 @@ struct GridRay {
 // keeps the reciprocal finite.
 vec3 finite_reciprocal(vec3 dir) {
     vec3 tiny = mix(vec3(1e-18), vec3(-1e-18), lessThan(dir, vec3(0.0)));
-    return 1.0 / mix(dir, tiny, lessThan(abs(dir), vec3(1e-18)));
+    OVC_EXACTLY vec3 inv_dir = 1.0 / mix(dir, tiny, lessThan(abs(dir), vec3(1e-18)));
+    return inv_dir;
 }
 
 GridRay grid_ray(vec3 org, vec3 inv_dir, vec3 grid_middle, vec3 grid_cell) {
-    return GridRay(grid_cell * inv_dir * (1.0 / 65536.0), (grid_middle - org) * inv_dir);
+    OVC_EXACTLY vec3 scale = grid_cell * inv_dir * (1.0 / 65536.0);
+    OVC_EXACTLY vec3 offset = (grid_middle - org) * inv_dir;
+    return GridRay(scale, offset);
 }
 
 // Four 16-bit coordinates of one side, two to a word. The upper one keeps the lower one as its
@@ -42,12 +51,6 @@ Boxes boxes_of(uvec4 x, uvec4 y, uvec4 z, bvec3 backward) {
     return Boxes(vec4[3](coordinates(x.xy), coordinates(y.xy), coordinates(z.xy)),
                  vec4[3](coordinates(x.zw), coordinates(y.zw), coordinates(z.zw)));
 }
-
-#if OVC_MAY_WAIT
-#define OVC_EXACTLY precise // so that the key of a link has the same bits in every kernel
-#else
-#define OVC_EXACTLY
-#endif
 
 ivec4 when(vec4 planes, float scale, float offset) {
     OVC_EXACTLY vec4 t = planes * scale + offset;

@@ -84,7 +84,7 @@ FrameRay frame_ray(WorldRay ray, Portal portal) {
 // Returns the t's in `inside` at which org + t dir lies between lo and hi; none if x > y.
 dvec2 between(dvec2 inside, double org, double dir, double lo, double hi) {
     bool still = dir == 0.0;
-    double inv_dir = 1.0 / (still ? 1.0 : dir);
+    precise double inv_dir = 1.0 / (still ? 1.0 : dir);
     precise double a = (lo - org) * inv_dir, b = (hi - org) * inv_dir;
     bool outside = still && (org < lo || org > hi);
     dvec2 crossed = dvec2(max(inside.x, min(a, b)), min(inside.y, max(a, b)));
@@ -95,12 +95,13 @@ dvec2 between(dvec2 inside, double org, double dir, double lo, double hi) {
 // it may seem to miss it. The box lies within 2 of the origin.
 double off_at_box(FrameRay ray, double speed) {
     const double rounding = 1.7763568394002505e-15lf; // 2^-49
-    double ratio = ray.dir_reach / max(speed, 1.0e-300lf);
-    return min((ray.reach + (ray.reach + 2.0) * ratio) * rounding, 1.0e290lf);
+    precise double ratio = ray.dir_reach / max(speed, 1.0e-300lf);
+    precise double off = min((ray.reach + (ray.reach + 2.0) * ratio) * rounding, 1.0e290lf);
+    return off;
 }
 
 dvec2 inside_box(FrameRay ray, Portal portal, double off, dvec2 inside) {
-    dvec3 lo = dvec3(portal.lo) - off, hi = dvec3(portal.hi) + off;
+    precise dvec3 lo = dvec3(portal.lo) - off, hi = dvec3(portal.hi) + off;
     inside = between(inside, ray.org.x, ray.dir.x, lo.x, hi.x);
     inside = between(inside, ray.org.y, ray.dir.y, lo.y, hi.y);
     return between(inside, ray.org.z, ray.dir.z, lo.z, hi.z);

@@ -132,7 +132,7 @@ Inside inside_box(FrameRay frame, vec3 lo, vec3 hi) {
         bool still = abs(dir) <= 9.094947017729282e-13 * frame.dir_reach; // 2^-40
         bool beside = org < lo[axis] - off || org > hi[axis] + off;
         float inv_dir = 1.0 / (still ? 1.0 : dir);
-        float share = slack + 5.6843418860808015e-14 * frame.dir_reach * abs(inv_dir); // 2^-44
+        float share = slack + 1.1368683772161603e-13 * frame.dir_reach * abs(inv_dir); // 2^-43
         float a = (lo[axis] - org) * inv_dir, b = (hi[axis] - org) * inv_dir;
         float first = min(a, b), last = max(a, b);
         float first_off = abs(first) * share + off * abs(inv_dir);

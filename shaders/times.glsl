@@ -29,8 +29,9 @@ void measure(inout Place place) {
     const float slack = 9.5367431640625e-7; // 2^-20
     precise float offset = offset_between(place.part, place.scene);
     precise float rate = rate_between(place.part, place.scene);
-    float error = (abs(offset) + 1.0) * slack;
-    place.not_after = vec2(offset - error, rate * (1.0 - slack));
+    OVC_EXACTLY float error = (abs(offset) + 1.0) * slack;
+    OVC_EXACTLY vec2 line = vec2(offset - error, rate * (1.0 - slack));
+    place.not_after = line;
     place.not_before = vec2(offset + error, rate * (1.0 + slack));
 }
 

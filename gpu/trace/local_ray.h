@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // LocalRay: a ray in the frame of the top-level tree, as the kernel takes it
 // (docs/design/numerics.md, "Frames"). local_ray() is the counterpart of local_ray() in
-// shaders/portals.glsl; it runs on the CPU so that only 32 bytes a ray go to the GPU.
+// shaders/rebase_doubles.glsl; it runs on the CPU so that only 32 bytes a ray go to the GPU.
 #pragma once
 
 #include "core/exact/triangle.h"
