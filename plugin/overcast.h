@@ -662,7 +662,7 @@ typedef struct ovc_api {
 
     /* Writes the hits of each ray in the order of t, mesh and prim, the first max_hits of them: those of ray i from
      * hits[i * max_hits] on, and misses where there are fewer. counts: NULL, or ray_count numbers: how many hits the ray has in all.
-     * max_hits may be 0, and hits NULL then. query may be NULL; its `after`, masks and filter tell which hits count. A ray of n hits
+     * max_hits may be 0, and hits NULL then. query may be NULL; its skip, `after`, masks and filter tell which hits count. A ray of n hits
      * takes O(n log n) time, however many of them lie in one point. */
     ovc_result (*all_hits)(ovc_scene scene, const ovc_ray* rays, size_t ray_count, size_t max_hits, ovc_hit* hits,
                            uint64_t* counts, const ovc_query* query);

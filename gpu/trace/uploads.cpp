@@ -30,7 +30,7 @@ void Uploads::write(const gl::Buffer& buffer, uint64_t to, uint64_t bytes,
     void* const memory = glMapNamedBufferRange(buffer.id(), GLintptr(to), GLsizeiptr(bytes),
                                                GL_MAP_WRITE_BIT | GL_MAP_INVALIDATE_RANGE_BIT);
     if (!memory)
-        return; // the context is lost; GlThread notices that
+        return; // the context is lost, or GL keeps the error, which fails the next pass
     fill({static_cast<std::byte*>(memory), bytes});
     glUnmapNamedBuffer(buffer.id());
 }

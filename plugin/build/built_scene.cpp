@@ -111,14 +111,15 @@ std::optional<TriangleId> BuiltScene::first_copy_behind(TriangleId built, Triang
 }
 
 /// Returns whether doubles tell that the ray does not hit the triangle from the place on.
-static bool is_passed(const Ray& ray, const Triangle& triangle, const HitPlace& place) {
+static bool is_passed(const Ray& ray, const Soup& soup, TriangleId id, const HitPlace& place) {
     const double all = std::numeric_limits<double>::max();
     const PreparedRay whole(Ray{ray.org, -all, ray.dir, all});
     bool in_doubt = false;
-    const auto found = candidate(whole, triangle, {}, [&](auto&&...) -> std::optional<Candidate> {
-        in_doubt = true;
-        return std::nullopt;
-    });
+    const auto found =
+        candidate(whole, soup.triangle(id), id, [&](auto&&...) -> std::optional<Candidate> {
+            in_doubt = true;
+            return std::nullopt;
+        });
     return !in_doubt && (!found || found->latest_t() < place.t);
 }
 
@@ -128,7 +129,7 @@ uint32_t BuiltScene::number_to_skip(const Ray& ray, const Exclusion& without) co
         return start;
     // A ray that has passed by a hit is far from the triangle that it started on, but the kernel
     // would be in doubt about the one at the place.
-    if (start != OVC_NO_TRIANGLE && !is_passed(ray, soup.triangle(without.skip), without.after))
+    if (start != OVC_NO_TRIANGLE && !is_passed(ray, soup, without.skip, without.after))
         return start;
     const uint32_t at_place = number_at_place(ray, without.after);
     return at_place != OVC_NO_TRIANGLE ? at_place : start;

@@ -294,6 +294,8 @@ bool LevelUpdate::refit(uint32_t leaf) {
         page.built_cost = float(cost->before);
     if (cost->after > kMaxGrowth * double(page.built_cost))
         return false;
+    if (leaf == scene_.late_leaf && !parted.empty())
+        return false; // nowhere else has room for what it loses
     const std::lock_guard lock(mutex_);
     for (const uint32_t number : parted)
         come_.push_back(scene_.numbers.id(number));

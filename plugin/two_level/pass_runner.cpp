@@ -138,11 +138,20 @@ Result<Done> PassRunner::open(BuildProgress* progress) {
                         plan_.pool_bytes, smaller));
         plan_.pool_bytes = smaller;
     }
-    bring_first(progress);
     gpu_bytes_ = tracer_->ledger().in_use;
     tracing_.statistics.gpu_peak_bytes =
         std::max(tracing_.statistics.gpu_peak_bytes, tracer_->ledger().peak);
-    return tracing_.watch.unless_cancelled();
+    // Kernels take for resident what the pool has room for, so a tracer that lacks some must go.
+    try {
+        bring_first(progress);
+    } catch (...) {
+        close();
+        throw;
+    }
+    const Result<Done> fine = tracing_.watch.unless_cancelled();
+    if (!fine)
+        close();
+    return fine;
 }
 
 /// Returns whether the pages could be brought up to date where they are. anew: the plan of the
@@ -375,8 +384,10 @@ Result<Done> PassRunner::finish_pass(Batch& batch) {
     const auto& [done, alive, moved, seconds, kernel_seconds] = batch.result;
     if (!alive)
         return lost();
-    if (!done)
+    if (!done) {
+        has_failed_ = true;
         return done.error();
+    }
     const size_t count = batch.rays.size();
     ovc_statistics& statistics = tracing_.statistics;
     statistics.passes += 1;
@@ -399,6 +410,8 @@ void PassRunner::abandon() {
                     gl_.finish(*job, [] {});
                 } catch (...) { // the call has failed already
                 }
+    if (std::exchange(has_failed_, false))
+        close();
 }
 
 std::vector<uint32_t> PassRunner::take_active() {

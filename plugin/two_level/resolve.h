@@ -434,7 +434,9 @@ private:
             enter_miss(i);
             return true;
         }
-        if (Query::kAnyHit && found.is_certain_hit() && query_.without.after.empty()) {
+        if (Query::kAnyHit && found.is_certain_hit()) {
+            if (!exclusion(i).after.is_before_all())
+                return false; // the answer does not tell which hit it is, and so not if it counts
             query_.set(i, kSomeHit);
             return true;
         }

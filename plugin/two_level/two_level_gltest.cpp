@@ -4,12 +4,15 @@
 #include "plugin/two_level/test_two_level.h"
 
 #include "core/text/format_text.h"
+#include "gpu/gl/gl.h"
 #include "kdtree/build.h"
 #include "kdtree/traverse.h"
 
 #include <algorithm>
+#include <atomic>
 #include <numeric>
 #include <random>
+#include <utility>
 
 namespace ovc {
 namespace {
@@ -20,6 +23,32 @@ using test::Spawner;
 struct Variant {
     std::string name;
     TwoLevelOptions options;
+};
+
+/// Lets the driver refuse the next so many requests for memory to upload through.
+class RefusedUploads {
+public:
+    explicit RefusedUploads(int count) {
+        left_ = count;
+        real_ = std::exchange(epoxy_glMapNamedBufferRange, refuse);
+    }
+    ~RefusedUploads() { epoxy_glMapNamedBufferRange = real_; }
+    RefusedUploads(const RefusedUploads&) = delete;
+
+    int left() const { return left_; }
+
+private:
+    static void* EPOXY_CALLSPEC refuse(GLuint buffer, GLintptr offset, GLsizeiptr bytes,
+                                       GLbitfield access) {
+        if (left_ <= 0)
+            return real_(buffer, offset, bytes, access);
+        --left_;
+        glEnable(GL_NONE); // GL has an error from now on
+        return nullptr;
+    }
+
+    static inline std::atomic<int> left_{0};
+    static inline PFNGLMAPNAMEDBUFFERRANGEPROC real_ = nullptr;
 };
 
 std::vector<Variant> variants() {
@@ -370,6 +399,25 @@ TEST_F(TwoLevelGl, ALoopThatTheDriverEndsIsCountedAndDecidedInDouble) {
                 EXPECT_EQ(s.capped, 1u) << "no loop was ended, or one of a ray in doubt";
             }
         }
+}
+
+/// The pool has no page then where the tracer believes that it has one.
+TEST_F(TwoLevelGl, APageThatDidNotGetThereFailsOneCallAlone) {
+    if (!gl->info().is_software)
+        GTEST_SKIP() << "uploads go through memory that stays mapped";
+    const Soup soup = test::random_soup(9, 4000, 0.2);
+    const std::vector<Ray> rays = test::rays_from_outside(3, 3000);
+    const std::vector<Hit> expected = test::brute_force(soup, rays);
+    const auto structure = build(soup, {.budget_bytes = 96u << 10, .leaf_triangles = 40});
+    ASSERT_TRUE(structure);
+    test::expect_answers(*structure, rays, expected);
+    {
+        const RefusedUploads refused(2);
+        std::vector<Hit> hits(rays.size());
+        EXPECT_FALSE(structure->intersect(rays, {}, hits));
+        EXPECT_EQ(refused.left(), 0);
+    }
+    test::expect_answers(*structure, rays, expected);
 }
 
 TEST_F(TwoLevelGl, AStackGrowsUntilFewRaysNeedMore) {

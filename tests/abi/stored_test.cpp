@@ -370,8 +370,6 @@ protected:
 
     std::optional<Disk> disk;
     size_t failures = 0;
-
-private:
     const Several several_;
     std::vector<ovc_hit> expected_;
     ovc_scene_config config_{};
@@ -391,6 +389,23 @@ TEST_F(Spoiled, ReadsThatFailAreSaidAndTheNextCallWorks) {
             return;
     }
     EXPECT_GT(failures, 5u);
+}
+
+/// All pages fit, so rays do not wait for those that did not come.
+TEST_F(Spoiled, AReadThatFailsWhenTheGpuIsFilledAgainLeavesNoGap) {
+    const auto scene = disk->scene(device, disk->config(smallest_host(*disk)));
+    ASSERT_EQ(api().commit(scene.get()), OVC_OK) << error();
+    std::vector<ovc_hit> hits(several_.rays.size());
+    for (const int64_t reads : {0, 3, 8}) {
+        ASSERT_EQ(api().purge(scene.get()), OVC_OK);
+        disk->reads_left = reads;
+        const ovc_result result = api().intersect(scene.get(), test::as_abi(several_.rays),
+                                                  hits.size(), hits.data(), nullptr);
+        disk->reads_left = INT64_MAX;
+        EXPECT_EQ(result, OVC_ERROR_UNREADABLE);
+        hits = test::answers(scene, several_.rays);
+        EXPECT_EQ(std::memcmp(hits.data(), expected_.data(), hits.size() * sizeof(ovc_hit)), 0);
+    }
 }
 
 /// Where there is no error, a page that was read ahead was read again.

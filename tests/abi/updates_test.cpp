@@ -271,6 +271,28 @@ TEST_F(Updates, OfAMeshWithoutAreaLeaveTheFloor) {
                        2, /* most_hit= */ false);
 }
 
+/// The first update parts the triangles from the one that they are equal to. The second parts two
+/// that share a side in the late leaf.
+TEST_F(Updates, PartTrianglesInTheLateLeaf) {
+    config.leaf_triangles = 0;
+    World w = world();
+    const std::vector<dvec3> flat{{-8, 8, -8}, {-8, 8, 8}, {8, 8, 8}};
+    std::vector<dvec3> three;
+    for (int i = 0; i < 3; ++i)
+        three.insert(three.end(), flat.begin(), flat.end());
+    w.add(three, dvec3(0), nullptr);
+    w.commit();
+    w.move_corners(0, 0, {{-0.5, 0.5, 1}, {0.5, 0.5, -1}, {0.5, 1.5, 0}});
+    w.commit();
+    const std::vector<dvec3> last{{1, -2, -3}, {1, -3, 2}, {-1, 0, 3}};
+    w.move_corners(0, 2, last);
+    w.commit();
+    EXPECT_EQ(w.statistics().updates, 2u);
+    const dvec3 middle = (last[0] + last[1] + last[2]) / 3.0;
+    expect_brute_force(w, {{middle - dvec3(0, 0, 1), 0, dvec3(0, 0, 1)}}, 1);
+    expect_brute_force(w, rays_at(w.expected, 200, 1), 20, /* most_hit= */ false);
+}
+
 /// The frame of what is left is not that of the scene.
 TEST_F(Updates, LeaveOnePartOfAWideScene) {
     config.leaf_triangles = 15;
@@ -283,6 +305,30 @@ TEST_F(Updates, LeaveOnePartOfAWideScene) {
     w.commit();
     EXPECT_EQ(w.statistics().updates, 1u);
     expect_brute_force(w, rays_at(w.expected, 200, 4), 2, /* most_hit= */ false);
+}
+
+/// An answer to an occlusion ray does not tell which triangle is hit, and number 0 is of no mesh
+/// that is there.
+TEST_F(Updates, OcclusionBehindAPlaceNeedsNoFirstMesh) {
+    World w = world();
+    const std::vector<vec3> triangle{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}};
+    for (int z = 0; z < 3; ++z)
+        w.add(triangle, dvec3(0, 0, z), nullptr);
+    w.commit();
+    w.remove(0);
+    w.commit();
+    const Ray ray{dvec3(1, 1, -1), 0, dvec3(0, 0, 1)};
+    const ovc_hit before_all{-INFINITY, 0, 0, OVC_NONE, OVC_NONE};
+    const ovc_hit places[] = {before_all, {2, 0, 0, 1, 0}, {3, 0, 0, 2, 0}};
+    for (const ovc_hit& place : places) {
+        auto query = sized<ovc_query>();
+        query.after = &place;
+        uint8_t occluded = 2;
+        ASSERT_EQ(api().occluded(w.scene.get(), reinterpret_cast<const ovc_ray*>(&ray), 1,
+                                 &occluded, &query),
+                  OVC_OK);
+        EXPECT_EQ(occluded, place.t < 3) << place.t;
+    }
 }
 
 /// Passes before the update named leaves that rays waited for. Those after it name none, for all

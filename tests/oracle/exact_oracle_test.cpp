@@ -299,18 +299,23 @@ private:
     bool asked_twice_ = false;
 };
 
-/// Tests the first hit, or all hits, of rays with masks and a filter, in every form of a call.
+/// Tests the first hit, or all hits, of rays with skips, masks and a filter, in every form of a
+/// call.
 class ExactSieves : public ExactOrder {
 protected:
     void expect_counting_hits(ovc_scene scene, Random& random,
                               const std::vector<std::vector<ovc_hit>>& hits) {
         masks.clear();
+        skips.assign(kRays, {OVC_NONE, OVC_NONE});
         expected.assign(kRays, {});
         for (size_t i = 0; i < kRays; ++i) {
             masks.push_back(uint32_t(random.below(4)));
+            if (!hits[i].empty() && random.below(2)) {
+                const ovc_hit& hit = hits[i][random.below(std::min<size_t>(hits[i].size(), 3))];
+                skips[i] = {hit.mesh, hit.prim};
+            }
             for (const ovc_hit& hit : hits[i])
-                if ((masks[i] == 0 || mask_of(hit.mesh) == 0 || (masks[i] & mask_of(hit.mesh))) &&
-                    NotedFilter::lets_pass(i, hit))
+                if (sees(i, hit) && NotedFilter::lets_pass(i, hit))
                     expected[i].push_back(hit);
         }
         ASSERT_NO_FATAL_FAILURE(expect_in_batches(scene));
@@ -326,6 +331,7 @@ protected:
         std::vector<std::set<std::pair<uint32_t, uint32_t>>> asked(kRays);
         NotedFilter filter(asked);
         auto query = sized<ovc_query>();
+        query.skip = skips.data();
         query.masks = masks.data();
         query.filter = NotedFilter::keep;
         query.filter_user = &filter;
@@ -364,6 +370,7 @@ protected:
     void expect_one_by_one(ovc_scene scene) {
         with_filter([&](ovc_query& query) {
             for (size_t i = 0; i < kRays; i += 10) {
+                query.skip = &skips[i];
                 query.masks = &masks[i];
                 query.filter = [](void*, size_t count, const uint64_t*, const ovc_hit* hits,
                                   uint8_t* keep) {
@@ -384,11 +391,17 @@ protected:
         });
     }
 
-    /// Returns the hits of the ray that its mask sees.
+    bool sees(size_t i, const ovc_hit& hit) const {
+        const uint32_t mask = mask_of(hit.mesh);
+        return (masks[i] == 0 || mask == 0 || (masks[i] & mask)) &&
+               (hit.mesh != skips[i].mesh || hit.prim != skips[i].prim);
+    }
+
+    /// Returns the hits of the ray that it sees.
     std::vector<ovc_hit> all_seen(size_t i) const {
         std::vector<ovc_hit> seen;
         for (const ovc_hit& hit : all_hits[i])
-            if (masks[i] == 0 || mask_of(hit.mesh) == 0 || (masks[i] & mask_of(hit.mesh)))
+            if (sees(i, hit))
                 seen.push_back(hit);
         return seen;
     }
@@ -404,7 +417,8 @@ protected:
         };
         with_filter([&](ovc_query& query) {
             Host host{*this, query};
-            host.sieved.masks = nullptr; // Rays come one by one.
+            host.sieved.skip = nullptr; // Rays come one by one.
+            host.sieved.masks = nullptr;
             auto calls = sized<ovc_stream_host>();
             calls.user = &host;
             calls.more = [](void* user, ovc_stream stream, size_t) {
@@ -412,6 +426,7 @@ protected:
                 if (std::exchange(self.pushed, true))
                     return 0;
                 for (uint64_t i = 0; i < kRays; ++i) {
+                    self.sieved.skip = &self.test.skips[i];
                     self.sieved.masks = &self.test.masks[i];
                     const ovc_query* const given = i % 4 == 0 ? nullptr : &self.sieved;
                     if (i % 2 == 0)
@@ -443,6 +458,7 @@ protected:
         });
     }
 
+    std::vector<ovc_triangle> skips;
     std::vector<uint32_t> masks;
     std::vector<std::vector<ovc_hit>> all_hits, expected;
 };
