@@ -125,7 +125,8 @@ void LeafStore::count_read(uint64_t bytes) {
 }
 
 void LeafStore::fail(Error error) const {
-    error.kind = ErrorKind::Unreadable;
+    if (error.kind == ErrorKind::Other) // it may be memory that there is not
+        error.kind = ErrorKind::Unreadable;
     if (tell_)
         tell_(std::move(error));
 }

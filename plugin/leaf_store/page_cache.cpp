@@ -3,10 +3,13 @@
 // least lately goes.
 #include "plugin/leaf_store/page_cache.h"
 
+#include "core/system/caught_error.h"
+
 #include <sys/mman.h>
 
 #include <algorithm>
 #include <cassert>
+#include <exception>
 
 namespace ovc {
 
@@ -74,18 +77,26 @@ bool PageCache::make_room(uint64_t bytes) {
     return true;
 }
 
+Result<Done> PageCache::call_fill(uint32_t page, std::span<std::byte> to) const {
+    try {
+        return fill_(page, to);
+    } catch (...) {
+        return caught_error();
+    }
+}
+
 /// Reads a page for which there is room, without the lock.
 Result<Done> PageCache::fill(Lock& lock, uint32_t page) {
     Entry& entry = entries_[page];
     assert(entry.state == State::Away && entry.pins == 0);
     entry.memory = take_memory(entry.bytes);
     if (!entry.memory)
-        return Error{"out of host memory", ErrorKind::OutOfMemory};
+        return out_of_memory();
     entry.state = State::Reading;
     bytes_ += entry.bytes;
     counts_.peak_bytes = std::max(counts_.peak_bytes, bytes_);
     lock.unlock();
-    Result<Done> filled = fill_(page, {entry.memory, entry.bytes});
+    Result<Done> filled = call_fill(page, {entry.memory, entry.bytes});
     lock.lock();
     entry.state = State::Here;
     entry.last_use = ++clock_;
@@ -132,8 +143,11 @@ void PageCache::read_ahead(std::vector<uint32_t> pages) {
         return;
     wanted_ = std::move(pages);
     std::ranges::reverse(wanted_);
-    while (readers_.size() < kReaders)
-        readers_.emplace_back([this](const std::stop_token& stop) { run_reader(stop); });
+    try {
+        while (readers_.size() < kReaders)
+            readers_.emplace_back([this](const std::stop_token& stop) { run_reader(stop); });
+    } catch (const std::exception&) { // those that have started do, and pin() needs none
+    }
     asked_.notify_all();
 }
 

@@ -20,7 +20,8 @@ namespace ovc {
 
 class PageCache {
 public:
-    /// Fills `to` with the page of that number. Several threads may call it.
+    /// Fills `to` with the page of that number. Several threads may call it. An exception is an
+    /// error too: others may wait for the page.
     using Fill = std::function<Result<Done>(uint32_t page, std::span<std::byte> to)>;
 
     /// page_bytes: of each page, whole texels. capacity_bytes: room for all, or for any two of
@@ -59,7 +60,8 @@ public:
     Result<Pin> pin(uint32_t page);
 
     /// Replaces what is to be read ahead: these pages, in this order, as far as half of the
-    /// capacity goes.
+    /// capacity goes. Where the system refuses the threads for it, pages are read when they are
+    /// needed.
     void read_ahead(std::vector<uint32_t> pages);
 
     bool is_here(uint32_t page) const;
@@ -87,6 +89,7 @@ private:
     bool make_room(uint64_t bytes);
     void evict(Entry& entry);
     Result<Done> fill(Lock& lock, uint32_t page);
+    Result<Done> call_fill(uint32_t page, std::span<std::byte> to) const;
     void run_reader(const std::stop_token& stop);
     bool read_next_ahead(Lock& lock);
 

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <new>
 
 namespace ovc {
 namespace {
@@ -18,7 +19,8 @@ namespace {
 struct Pages {
     std::vector<uint64_t> bytes;
     std::atomic<uint64_t> fills{0};
-    std::atomic<uint32_t> failing{0}; // one fill in so many fails; 0: none
+    std::atomic<uint32_t> failing{0};  // one fill in so many fails; 0: none
+    std::atomic<uint32_t> throwing{0}; // one in so many throws
 
     explicit Pages(size_t count) {
         for (size_t i = 0; i < count; ++i)
@@ -32,6 +34,8 @@ struct Pages {
             const uint64_t number = ++fills;
             if (failing > 0 && number % failing == 0)
                 return Error{"the disk fails"};
+            if (throwing > 0 && number % throwing == 0)
+                throw std::bad_alloc();
             const std::span texels(reinterpret_cast<uvec4*>(to.data()), to.size() / sizeof(uvec4));
             std::ranges::fill(texels, uvec4(page));
             return Done{};
@@ -70,9 +74,13 @@ TEST(PageCache, ThePageUsedLeastLatelyGoes) {
 }
 
 TEST(PageCache, StaysWithinItsCapacityWhateverThreadsDo) {
-    for (const uint32_t failing : {0u, 7u}) {
+    struct {
+        uint32_t failing, throwing;
+    } const cases[] = {{0, 0}, {7, 0}, {0, 7}};
+    for (const auto& [failing, throwing] : cases) {
         Pages pages(40);
         pages.failing = failing;
+        pages.throwing = throwing;
         const uint64_t capacity = 2 * pages.largest();
         PageCache cache(pages.bytes, capacity, pages.fill());
         std::atomic<size_t> errors{0};
@@ -94,8 +102,22 @@ TEST(PageCache, StaysWithinItsCapacityWhateverThreadsDo) {
         for (std::thread& thread : threads)
             thread.join();
         EXPECT_LE(cache.counts().peak_bytes, capacity);
-        EXPECT_EQ(errors > 0, failing > 0);
+        EXPECT_EQ(errors > 0, failing + throwing > 0);
     }
+}
+
+TEST(PageCache, APageForWhichThereIsNoMemoryIsAnErrorAndCanBeReadLater) {
+    Pages pages(2);
+    PageCache cache(pages.bytes, 1 << 20, pages.fill());
+    pages.throwing = 1;
+    const auto none = cache.pin(1);
+    ASSERT_FALSE(none);
+    EXPECT_EQ(none.error().kind, ErrorKind::OutOfMemory);
+    EXPECT_FALSE(cache.is_here(1));
+    pages.throwing = 0;
+    const auto pin = cache.pin(1);
+    ASSERT_TRUE(pin);
+    EXPECT_TRUE(holds(*pin, 1));
 }
 
 TEST(PageCache, ReadsAheadInOrderUpToHalfOfItsCapacity) {

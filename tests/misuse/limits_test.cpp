@@ -88,6 +88,16 @@ TEST_F(Limits, ARenderingWithoutAThreadForItsOtherLaneEndsAndIsWhole) {
     fs::remove(picture);
 }
 
+TEST_F(Limits, PagesAreReadWithoutThreadsToReadThemAhead) {
+    for (int threads = 0; threads < 4; ++threads) {
+        const auto run = test::run_shell(
+            "OVC_TEST_THREADS=" + std::to_string(threads) +
+            " LD_PRELOAD=" OVC_BINARY_DIR "/bin/librefuse_threads.so " OVC_BINARY_DIR
+            "/bin/plugin_test --gtest_filter=PageCache.WhatWasReadAheadMakesRoomForWhatIsNeeded");
+        EXPECT_EQ(run.exit_code, 0) << threads << " threads: " << run.output;
+    }
+}
+
 TEST_F(Limits, LittleAddressSpaceIsASentence) {
     int refused = 0;
     for (int mib = 20; mib < 700; mib += 23) {
