@@ -2,12 +2,15 @@
 // Devices are found by number and by name, and each failure has its sentence.
 #include "gpu/gl/egl_context.h"
 
+#include "gpu/gl/gl_thread.h"
 #include "gpu/gl/workarounds.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cstdlib>
+#include <new>
 #include <thread>
 
 namespace ovc {
@@ -76,6 +79,31 @@ TEST(EglContextGl, FallingBackToSoftwareIsSaid) {
     } else {
         EXPECT_EQ(said, "");
     }
+}
+
+/// A log for whose copies there is no memory, once that is set.
+struct LargeLog {
+    explicit LargeLog(const std::atomic<bool>& is_full) : is_full_(&is_full) {}
+    LargeLog(const LargeLog& other) : is_full_(other.is_full_) {
+        if (*is_full_)
+            throw std::bad_alloc();
+    }
+    void operator()(LogLevel, const std::string&) const {}
+
+private:
+    const std::atomic<bool>* is_full_;
+};
+
+TEST(EglContextGl, ADeviceForWhichThereIsNoMemoryIsAnError) {
+    if (const auto device = GlThread::start("", {}); !device)
+        GTEST_SKIP() << device.error().message;
+    std::atomic<bool> is_full{false};
+    LogSink log{LargeLog(is_full)};
+    is_full = true; // the device's thread copies it, beside its context
+    const auto device = GlThread::start("", std::move(log));
+    ASSERT_FALSE(device);
+    EXPECT_EQ(device.error().kind, ErrorKind::OutOfMemory);
+    EXPECT_EQ(device.error().message, "out of memory");
 }
 
 } // namespace

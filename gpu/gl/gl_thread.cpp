@@ -2,23 +2,13 @@
 // GlThread: hands pieces of work over to the thread, first come, first served.
 #include "gpu/gl/gl_thread.h"
 
+#include "core/system/caught_error.h"
 #include "gpu/driver/driver_threads.h"
 
 #include <chrono>
 #include <utility>
 
 namespace ovc {
-
-/// Opens a device. An exception for lack of memory becomes an error, because it would end the
-/// process if it left the thread.
-static Result<EglContext> create_context(const std::string& device, const LogSink& log) {
-    try {
-        return EglContext::create(device, log);
-    } catch (const std::exception& e) {
-        return Error{std::string("out of memory while opening a device: ") + e.what(),
-                     ErrorKind::OutOfMemory};
-    }
-}
 
 Result<std::unique_ptr<GlThread>> GlThread::start(const std::string& device, LogSink log,
                                                   const DeviceLimits& limits) {
@@ -56,7 +46,8 @@ void GlThread::begin(Job& job, std::function<void(GlState&)> work) {
         job.work_ = std::move(work);
         job.thrown_ = {};
         job.is_done_ = false;
-        jobs_.push_back(&job);
+        job.next_ = nullptr;
+        *std::exchange(end_of_jobs_, &job.next_) = &job;
     }
     changed_.notify_all();
 }
@@ -106,40 +97,52 @@ void GlThread::forget_if_dead(GlState& state) {
     state.context.lose();
 }
 
+/// Opens the device. What is thrown for lack of memory becomes an error, because it would end the
+/// process if it left the thread.
+Result<Done> GlThread::open(std::optional<GlState>& state) noexcept {
+    try {
+        if (limits_.threads > 0)
+            keep_to_cores(limits_.threads); // as do the threads that the driver starts from here
+        Result<EglContext> context = EglContext::create(device_, log_);
+        if (!context)
+            return context.error();
+        info_ = context->info();
+        info_.shared_budget_bytes = budget_.bytes();
+        state.emplace(
+            GlState{std::move(*context), DebugOutput(log_), {}, {}, gl::context_generation});
+        return Done{};
+    } catch (...) {
+        return caught_error();
+    }
+}
+
 void GlThread::serve() {
     name_device_thread();
     std::optional<LoopThreads::Scope> loops;
     if (limits_.loops)
         loops.emplace(*limits_.loops);
-    if (limits_.threads > 0)
-        keep_to_cores(limits_.threads); // as do the threads that the driver starts from here
-    Result<EglContext> context = create_context(device_, log_);
+    std::optional<GlState> state;
+    Result<Done> opened = open(state);
     std::unique_lock lock(mutex_);
-    if (!context) {
-        started_ = context.error();
-        changed_.notify_all();
-        return;
-    }
-    info_ = context->info();
-    GlState state{std::move(*context), DebugOutput(log_), {}, {}, gl::context_generation};
-    info_.shared_budget_bytes = budget_.bytes();
-    started_ = Done{};
+    started_ = std::move(opened);
     changed_.notify_all();
-    while (true) {
-        changed_.wait(lock, [&] { return !jobs_.empty() || stop_; });
-        if (jobs_.empty())
+    while (state) {
+        changed_.wait(lock, [&] { return first_job_ || stop_; });
+        if (!first_job_)
             break;
-        Job& job = *jobs_.front();
+        Job& job = *first_job_;
         lock.unlock();
         std::exception_ptr thrown;
-        forget_if_dead(state);
+        forget_if_dead(*state);
         try {
-            job.work_(state);
+            job.work_(*state);
         } catch (...) {
             thrown = std::current_exception();
         }
         lock.lock();
-        jobs_.pop_front();
+        first_job_ = job.next_;
+        if (!first_job_)
+            end_of_jobs_ = &first_job_;
         job.thrown_ = thrown;
         job.is_done_ = true;
         job.done_.notify_all(); // once the mutex is free, the job may be gone

@@ -12,7 +12,6 @@
 #include <atomic>
 #include <cassert>
 #include <condition_variable>
-#include <deque>
 #include <exception>
 #include <functional>
 #include <memory>
@@ -65,7 +64,7 @@ public:
     }
 
     /// A piece of work that begin() hands to the thread. Whoever owns it waits for it before it
-    /// goes.
+    /// goes. Waiting takes no memory, so that destructors may run work.
     class Job {
     public:
         Job() = default;
@@ -78,6 +77,7 @@ public:
         std::condition_variable done_;
         bool is_done_ = true;
         std::exception_ptr thrown_{};
+        Job* next_ = nullptr; // behind it
     };
 
     /// Has work(GlState&) run on the thread, behind all that was begun before, and returns at once.
@@ -107,6 +107,7 @@ private:
           budget_(limits.gpu_memory_bytes) {}
 
     void execute(std::function<void(GlState&)> work);
+    Result<Done> open(std::optional<GlState>& state) noexcept;
     void serve();
     static void forget_if_dead(GlState& state);
 
@@ -115,8 +116,9 @@ private:
     const DeviceLimits limits_;
     SharedBudget budget_;
     std::mutex mutex_;                // guards the members below, and jobs
-    std::condition_variable changed_; // jobs_ has another, stop_ or started_ is set
-    std::deque<Job*> jobs_;           // waiting, and in front the one under way
+    std::condition_variable changed_; // there is another job, stop_ or started_ is set
+    Job* first_job_ = nullptr;        // under way; behind it are those that wait
+    Job** end_of_jobs_ = &first_job_; // where the next goes
     std::optional<Result<Done>> started_;
     bool stop_ = false;
     std::atomic<uint32_t> generation_{0};
