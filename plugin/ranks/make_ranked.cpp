@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The structure of libovercast-mpi.so: two-level, whose pages are shared out between ranks where
 // they do not fit, or where the config says so.
+#include "core/system/caught_error.h"
 #include "core/text/format_text.h"
 #include "plugin/ranks/ranked_scene.h"
 #include "plugin/ranks/sharing.h"
@@ -25,10 +26,8 @@ Result<std::unique_ptr<TwoLevel>> built_here(const Soup& soup, GlThread& gl,
         return TwoLevel::build(soup, gl, options, log, progress);
     } catch (const Cancelled&) {
         return Error{"commit was cancelled", ErrorKind::Cancelled};
-    } catch (const std::bad_alloc&) {
-        return Error{"not enough host memory", ErrorKind::OutOfMemory};
-    } catch (const std::exception& error) {
-        return Error{error.what()};
+    } catch (...) {
+        return caught_error();
     }
 }
 

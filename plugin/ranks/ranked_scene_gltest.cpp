@@ -251,6 +251,22 @@ TEST_F(RankedGl, SaysWhoIsLost) {
     end(ranks);
 }
 
+TEST_F(RankedGl, ARankWithoutMemoryForItsAnswersIsLost) {
+    const Soup soup = test::closed_grid(24);
+    auto ranks = make(soup, 2, {.leaf_triangles = 40});
+    ASSERT_EQ(ranks.size(), 2u);
+    ranks[0].transport->refuse_memory();
+    const auto rays = test::rays_from_outside(55, 1000);
+    std::vector<Hit> hits(rays.size());
+    const Result<Done> done = ranks[1].scene->intersect(rays, {}, hits);
+    ASSERT_FALSE(done);
+    EXPECT_EQ(done.error().message, "rank 0 on here is lost");
+    const std::optional<Error> own = ranks[0].transport->lost();
+    ASSERT_TRUE(own);
+    EXPECT_EQ(own->kind, ErrorKind::OutOfMemory);
+    end(ranks);
+}
+
 /// Tells a call to stop.
 struct Impatient final : TraceWatch {
     bool goes_on(double) override { return false; }

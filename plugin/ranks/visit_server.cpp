@@ -2,12 +2,12 @@
 // Joins the visits that wait to batches, traces these, and cuts the answers up again.
 #include "plugin/ranks/visit_server.h"
 
+#include "core/system/caught_error.h"
 #include "plugin/ranks/visit_arrays.h"
 
 #include <algorithm>
 #include <chrono>
 #include <cstring>
-#include <exception>
 #include <iterator>
 #include <optional>
 
@@ -92,7 +92,17 @@ VisitServer::~VisitServer() {
     transport_.visits.wake();
 }
 
-void VisitServer::run(const std::stop_token& stop) {
+/// Those that wait for an answer learn of an error from serve(). Where even that fails, for want of
+/// memory, no answer would ever come.
+void VisitServer::run(const std::stop_token& stop) noexcept {
+    try {
+        serve_until(stop);
+    } catch (...) {
+        transport_.give_up(caught_error());
+    }
+}
+
+void VisitServer::serve_until(const std::stop_token& stop) {
     std::optional<LoopThreads::Scope> scope;
     if (threads_)
         scope.emplace(*threads_);
@@ -146,8 +156,8 @@ void VisitServer::serve(std::span<const Received> all, MessageKind kind) {
             answer<Hit>(some, MessageKind::Hits, [&](std::span<Hit> hits) {
                 return local_.intersect(batch_->rays, batch_->without, hits);
             });
-    } catch (const std::exception& error) {
-        fail(some, Error{error.what()});
+    } catch (...) {
+        fail(some, caught_error());
     }
 }
 

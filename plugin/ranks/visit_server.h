@@ -42,7 +42,8 @@ private:
     struct Batch;
     using Messages = std::span<const Received* const>;
 
-    void run(const std::stop_token& stop);
+    void run(const std::stop_token& stop) noexcept;
+    void serve_until(const std::stop_token& stop);
     void serve_first(std::vector<Received>& waiting);
     void serve(std::span<const Received> all, MessageKind kind);
     template <class Answer, class Trace>

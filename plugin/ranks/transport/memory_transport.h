@@ -7,6 +7,7 @@
 
 #include <atomic>
 #include <memory>
+#include <new>
 #include <random>
 #include <thread>
 #include <vector>
@@ -39,9 +40,16 @@ public:
         return "rank " + std::to_string(rank) + " on here";
     }
     std::optional<Error> lost() const override {
+        if (given_up_)
+            return why_;
         if (network_->lost == kNone)
             return std::nullopt;
         return Error{name_of(network_->lost) + " is lost"};
+    }
+    void give_up(Error why) noexcept override {
+        why_ = std::move(why);
+        given_up_ = true;
+        lose(rank_);
     }
     void close() override {
         if (!thread_.joinable())
@@ -55,9 +63,13 @@ public:
     TransportCounts counts() const override { return {sent_, 0}; }
 
     void lose(uint32_t rank) { network_->lost = rank; }
+    /// There is no memory from now on for what is sent to other ranks.
+    void refuse_memory() { has_memory_ = false; }
 
 protected:
     void send_away(uint32_t to, Message message) override {
+        if (!has_memory_)
+            throw std::bad_alloc();
         sent_ += message.bytes().size();
         network_->waiting[to].put(rank_, std::move(message));
     }
@@ -80,6 +92,8 @@ private:
     const std::shared_ptr<Network> network_;
     const uint32_t rank_, ranks_;
     std::atomic<uint64_t> sent_{0};
+    std::atomic<bool> has_memory_{true}, given_up_{false};
+    Error why_; // before given_up_ is set
     std::jthread thread_;
 };
 

@@ -3,6 +3,7 @@
 // heartbeats. Ranks watch each other in a ring, so that a thousand of them send no more than two.
 #include "plugin/ranks/transport/mpi_transport.h"
 
+#include "core/system/caught_error.h"
 #include "core/text/format_text.h"
 
 #include <mpi.h>
@@ -163,10 +164,11 @@ public:
 
     std::optional<Error> lost() const override {
         const std::lock_guard lock(mutex_);
-        if (lost_ == kNone)
-            return std::nullopt;
-        return Error{format_text("{} has given no word for {} s; the job cannot go on without it",
-                                 name_of(lost_), std::chrono::duration<double>(timeout_).count())};
+        return lost_;
+    }
+    void give_up(Error why) noexcept override {
+        lose(std::move(why));
+        given_up_ = true;
     }
     void close() override {
         if (!thread_.joinable())
@@ -210,15 +212,24 @@ private:
         changed_.notify_one();
     }
 
+    /// Where the work fails, heartbeats end with it: others learn thereby that this rank is lost.
+    void run() noexcept {
+        try {
+            work();
+        } catch (...) {
+            give_up(caught_error());
+        }
+    }
+
     /// Works until all ranks have closed their transports, or one is lost.
-    void run() {
+    void work() {
         heard_ = Clock::now();
         MPI_Request all_closed = MPI_REQUEST_NULL;
         bool is_closing = false;
         constexpr std::chrono::microseconds kMinNap(100); // a batch takes some thousands
         std::chrono::microseconds nap = kMinNap;
         Clock::time_point busy = heard_;
-        while (true) {
+        while (!given_up_) {
             const bool was_busy = send_what_waits() | receive_all() | forget_sent();
             send_heartbeat();
             watch_neighbour();
@@ -292,7 +303,7 @@ private:
                 deliver(from, Message(std::move(bytes)));
                 any = true;
             } else if (status.MPI_TAG == kLostTag) {
-                lose(*reinterpret_cast<const uint32_t*>(bytes.data()));
+                lose(silent(*reinterpret_cast<const uint32_t*>(bytes.data())));
             }
         }
     }
@@ -320,7 +331,7 @@ private:
         for (uint32_t rank = 0; rank < ranks_; ++rank)
             if (rank != rank_ && rank != before())
                 send_word(rank, kLostTag, before());
-        lose(before());
+        lose(silent(before()));
     }
 
     void send_word(uint32_t to, int tag, uint32_t word) {
@@ -330,26 +341,30 @@ private:
         sent_ += sizeof(word);
     }
 
-    void lose(uint32_t rank) {
+    Error silent(uint32_t rank) const {
+        return {format_text("{} has given no word for {} s; the job cannot go on without it",
+                            name_of(rank), std::chrono::duration<double>(timeout_).count())};
+    }
+    void lose(Error why) noexcept {
         const std::lock_guard lock(mutex_);
-        if (lost_ == kNone)
-            lost_ = rank;
+        if (!lost_)
+            lost_ = std::move(why);
     }
     bool lost_is_told() const {
         const std::lock_guard lock(mutex_);
-        return lost_ != kNone;
+        return lost_.has_value();
     }
 
     MPI_Comm comm_;
     const Clock::duration timeout_;
     uint32_t rank_ = 0, ranks_ = 1;
     std::vector<std::string> hosts_;
-    std::atomic<bool> closing_{false};
+    std::atomic<bool> closing_{false}, given_up_{false};
     std::atomic<uint64_t> sent_{0}, received_{0};
     mutable std::mutex mutex_; // guards the next four
     std::condition_variable changed_;
     std::vector<std::pair<uint32_t, Message>> outgoing_;
-    uint32_t lost_ = kNone;
+    std::optional<Error> lost_;
     bool woken_ = false;
     // of the thread
     std::list<Sending> sending_;

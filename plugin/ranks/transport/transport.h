@@ -74,8 +74,12 @@ public:
     /// Where messages arrive.
     MessageQueue visits, answers, notes;
 
-    /// Returns what has happened to a rank that is gone; nothing while all are there.
+    /// Returns what has happened to a rank that is gone, this one or another; nothing while all are
+    /// there.
     virtual std::optional<Error> lost() const = 0;
+    /// Gives this rank up, which cannot work for the others any more: lost() returns the error
+    /// here, and there it tells that this rank is lost. Any thread.
+    virtual void give_up(Error why) noexcept = 0;
     /// Waits until all ranks have called this, or one is lost. Messages come in until then, and no
     /// longer.
     virtual void close() = 0;
