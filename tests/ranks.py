@@ -3,6 +3,7 @@
 and where a rank is killed or hangs, a sentence, an end, and a film that goes on to the same bytes.
 
 usage: ranks.py OVERCAST            some of it, for the gate
+       ranks.py OVERCAST --faults LIBRARY   MPI fails; LIBRARY: of tests/faults/failing_mpi.c
        ranks.py OVERCAST --all      1, 2, 3, 4, 8 ranks, four scenes, shared or not, two budgets
        ranks.py OVERCAST --kills N  a rank is killed at N random moments
        ranks.py OVERCAST --cost     speed and memory of 2 ranks of a thread against 1 of two
@@ -163,6 +164,23 @@ def kill_ranks(overcast, folder, count, scene):
           f"{sum(first)} times of rank 0's")
 
 
+def fail_to_send(overcast, folder, library, scene):
+    """In one rank, MPI does not send from a certain message on: that rank says so, the job ends."""
+    render = [overcast, "render", *scene, "-q", "-o", str(folder / "unsent.png"), "--ranks-own",
+              "share", "--rank-timeout", "3"]
+    for rank, message in ((0, 20), (1, 1), (1, 20)):
+        preload = ["env", f"LD_PRELOAD={library}", f"OVC_FAULT={rank}:{message}"]
+        begun = time.monotonic()
+        done = run(2, preload + render, wanted=None)
+        took = time.monotonic() - begun
+        what = f"message {message} of rank {rank} is not sent"
+        if done.returncode == 0 or took > 30:
+            fail(f"{what}: exit {done.returncode} after {took:.1f} s\n{done.stderr}")
+        if f"MPI cannot send to rank {1 - rank} on " not in done.stderr:
+            fail(f"{what}: no sentence tells\n{done.stderr}")
+        print(f"{what}: ended in {took:.1f} s", flush=True)
+
+
 def measure(overcast, folder):
     """Prints the speed of ranks that built a scene, and the memory of those that read its file."""
     stats = folder / "stats.json"
@@ -216,6 +234,9 @@ def main():
         elif mode[:1] == ["--kills"]:
             kill_ranks(overcast, folder, int(mode[1]),
                        PATH_BOX + ["--samples", "64", "--size", "160x160"])
+        elif mode[:1] == ["--faults"]:
+            fail_to_send(overcast, folder, mode[1],
+                         PATH_BOX + ["--samples", "16", "--size", "64x64"])
         elif mode == ["--cost"]:
             measure(overcast, folder)
         elif mode == ["--all"]:

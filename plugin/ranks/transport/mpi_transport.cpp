@@ -15,6 +15,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <list>
+#include <stdexcept>
 #include <thread>
 
 namespace ovc {
@@ -47,6 +48,19 @@ std::string name_of_this_process() {
     gethostname(host, sizeof(host) - 1);
     const char* const rank = std::getenv("OMPI_COMM_WORLD_RANK");
     return format_text("rank {} on {}", rank ? rank : "?", host);
+}
+
+std::runtime_error mpi_failure(int code, const std::string& doing) {
+    char reason[MPI_MAX_ERROR_STRING] = {};
+    int length = 0;
+    MPI_Error_string(code, reason, &length);
+    return std::runtime_error(format_text("MPI cannot {}: {}", doing, reason));
+}
+
+/// Throws where a call of MPI has failed. What was to be sent or received is then gone.
+void check_mpi(int code, const char* doing) {
+    if (code != MPI_SUCCESS)
+        throw mpi_failure(code, doing);
 }
 
 /// While it lives, a call of MPI waits for all ranks, and would wait for ever for one that hangs.
@@ -235,13 +249,13 @@ private:
             watch_neighbour();
             // No message of this rank is under way any more, for all answers have come home.
             if (closing_ && !is_closing && sending_.empty()) {
-                MPI_Ibarrier(comm_, &all_closed);
+                check_mpi(MPI_Ibarrier(comm_, &all_closed), "end");
                 is_closing = true;
             }
             if (is_closing || closing_) {
                 int over = 0;
                 if (is_closing)
-                    MPI_Test(&all_closed, &over, MPI_STATUS_IGNORE);
+                    check_mpi(MPI_Test(&all_closed, &over, MPI_STATUS_IGNORE), "end");
                 if (over || lost_is_told())
                     return;
             }
@@ -266,10 +280,7 @@ private:
         for (auto& [to, message] : messages) {
             Sending& sending = sending_.emplace_back();
             sending.message = std::move(message);
-            const auto bytes = sending.message.bytes();
-            MPI_Isend(bytes.data(), int(bytes.size()), MPI_BYTE, int(to), kMessageTag, comm_,
-                      &sending.request);
-            sent_ += bytes.size();
+            begin(sending, to, kMessageTag, sending.message.bytes());
         }
         return !messages.empty();
     }
@@ -277,7 +288,7 @@ private:
     bool forget_sent() {
         return sending_.remove_if([](Sending& sending) {
             int over = 0;
-            MPI_Test(&sending.request, &over, MPI_STATUS_IGNORE);
+            check_mpi(MPI_Test(&sending.request, &over, MPI_STATUS_IGNORE), "send");
             return over != 0;
         }) > 0;
     }
@@ -288,13 +299,15 @@ private:
             int is_there = 0;
             MPI_Message message;
             MPI_Status status;
-            MPI_Improbe(MPI_ANY_SOURCE, MPI_ANY_TAG, comm_, &is_there, &message, &status);
+            check_mpi(MPI_Improbe(MPI_ANY_SOURCE, MPI_ANY_TAG, comm_, &is_there, &message, &status),
+                      "receive");
             if (!is_there)
                 return any;
             int size = 0;
             MPI_Get_count(&status, MPI_BYTE, &size);
             MessageBytes bytes{size_t(size)};
-            MPI_Mrecv(bytes.data(), size, MPI_BYTE, &message, MPI_STATUS_IGNORE);
+            check_mpi(MPI_Mrecv(bytes.data(), size, MPI_BYTE, &message, MPI_STATUS_IGNORE),
+                      "receive");
             received_ += size_t(size);
             const auto from = uint32_t(status.MPI_SOURCE);
             if (from == before())
@@ -337,8 +350,15 @@ private:
     void send_word(uint32_t to, int tag, uint32_t word) {
         Sending& sending = sending_.emplace_back();
         sending.word = word;
-        MPI_Isend(&sending.word, sizeof(word), MPI_BYTE, int(to), tag, comm_, &sending.request);
-        sent_ += sizeof(word);
+        begin(sending, to, tag, std::as_bytes(std::span(&sending.word, 1)));
+    }
+
+    void begin(Sending& sending, uint32_t to, int tag, std::span<const std::byte> bytes) {
+        const int code = MPI_Isend(bytes.data(), int(bytes.size()), MPI_BYTE, int(to), tag, comm_,
+                                   &sending.request);
+        if (code != MPI_SUCCESS)
+            throw mpi_failure(code, "send to " + name_of(to));
+        sent_ += bytes.size();
     }
 
     Error silent(uint32_t rank) const {
