@@ -114,7 +114,7 @@ ovc_result fail_without_device(ovc_result code, const std::string& message) {
     return code;
 }
 
-const char* last_error(ovc_device device) {
+const char* last_error(ovc_device device) noexcept {
     if (!device || device->magic != kDeviceMagic || device->mark.forked())
         return no_device.get();
     const CallsInside::Call call(device->calls);
@@ -209,27 +209,28 @@ ovc_result describe_device(ovc_device device, ovc_device_info* info) {
 void destroy_device(ovc_device device) {
     if (!is_device(device, "destroy_device") || in_host_function)
         return;
-    const auto refused = [device] {
-        const int scenes = device->scenes, tickets = device->tickets;
-        if (scenes > 0 || tickets > 0)
-            say(device->log, LogLevel::Error,
-                scenes > 0
-                    ? format_text("destroy_device: {} scenes are still alive; the device stays",
-                                  scenes)
-                    : format_text("destroy_device: {} tickets are not released; the device "
-                                  "stays",
-                                  tickets));
+    int scenes = 0, tickets = 0;
+    const auto is_used = [&] {
+        scenes = device->scenes;
+        tickets = device->tickets;
         return scenes > 0 || tickets > 0;
     };
-    uint32_t alive = kDeviceMagic;
-    if (refused() || !device->magic.compare_exchange_strong(alive, kDestroyed))
-        return;
-    device->calls.wait_until_none();
-    if (refused()) { // a call that was inside has made a scene or a ticket
-        device->magic = kDeviceMagic;
-        return;
+    if (!is_used()) {
+        uint32_t alive = kDeviceMagic;
+        if (!device->magic.compare_exchange_strong(alive, kDestroyed))
+            return; // another thread destroys it
+        device->calls.wait_until_none();
+        if (!is_used()) {
+            delete device;
+            return;
+        }
+        device->magic = kDeviceMagic; // a call that was inside has made a scene or a ticket
     }
-    delete device;
+    say(device->log, LogLevel::Error,
+        scenes > 0
+            ? format_text("destroy_device: {} scenes are still alive; the device stays", scenes)
+            : format_text("destroy_device: {} tickets are not released; the device stays",
+                          tickets));
 }
 
 } // namespace ovc

@@ -8,7 +8,7 @@
 
 namespace ovc {
 
-const char* last_error(ovc_device device);
+const char* last_error(ovc_device device) noexcept;
 ovc_result list_devices(ovc_device_info* infos, uint32_t capacity, uint32_t* count);
 ovc_result create_device(const ovc_device_config* config, ovc_device* device);
 ovc_result prepare_process(ovc_kernel kernel);

@@ -33,6 +33,7 @@
 #include <system_error>
 #include <thread>
 #include <tuple>
+#include <type_traits>
 
 namespace ovc {
 
@@ -55,9 +56,10 @@ public:
         const HostFunction mark;
         function_(user_, code, get());
     }
-    const char* get() {
+    const char* get() noexcept {
         const std::lock_guard lock(mutex_);
-        return messages_[std::this_thread::get_id()].c_str();
+        const auto found = messages_.find(std::this_thread::get_id());
+        return found == messages_.end() ? "" : found->second.c_str();
     }
 
 private:
@@ -102,6 +104,7 @@ struct ovc_ticket_t {
     ovc_device device = nullptr;
     ovc_scene scene = nullptr; // alive until the submission is done
     std::shared_ptr<ovc::Submission> submission;
+    std::unique_ptr<ovc_ticket_t> next; // of those that are released
 };
 
 struct ovc_scene_t {
@@ -124,27 +127,44 @@ struct ovc_scene_t {
     ovc::SingleRays single_rays{turn, streaming};
     std::atomic<std::thread::id> streaming; // the thread that is inside stream(), if any
     ovc_stream_t stream;
+    std::unique_ptr<ovc_scene_t> next; // of those that are destroyed
 };
 
 namespace ovc {
 
 /// Keeps the handles that a device has destroyed last, emptied, so that a thread that comes too
-/// late with one of them gets an error.
+/// late with one of them gets an error. Each has the next, so that keeping one takes no memory.
 template <class Handle>
 class DestroyedHandles {
 public:
-    void add(std::unique_ptr<Handle> handle) {
+    DestroyedHandles() = default;
+    ~DestroyedHandles() {
+        while (first_)
+            pop_first();
+    }
+    DestroyedHandles(const DestroyedHandles&) = delete;
+
+    void add(std::unique_ptr<Handle> handle) noexcept {
         const std::lock_guard lock(mutex_);
-        handles_.push_back(std::move(handle));
-        if (handles_.size() > kMax && handles_.front()->calls.none())
-            handles_.pop_front();
+        Handle* const added = handle.get();
+        (first_ ? last_->next : first_) = std::move(handle);
+        last_ = added;
+        if (++count_ > kMax && first_->calls.none())
+            pop_first();
     }
 
 private:
     static constexpr size_t kMax = 1000;
 
+    void pop_first() {
+        first_ = std::move(first_->next);
+        --count_;
+    }
+
     std::mutex mutex_;
-    std::deque<std::unique_ptr<Handle>> handles_;
+    std::unique_ptr<Handle> first_;
+    Handle* last_ = nullptr; // where there is a first
+    size_t count_ = 0;
 };
 
 } // namespace ovc
@@ -214,5 +234,25 @@ ovc_result guard(Keeper& messages, Body&& body) noexcept {
         return OVC_ERROR_OUT_OF_MEMORY; // there was no room even for a message
     }
 }
+
+template <auto function>
+struct NoThrow;
+
+template <class Value, class... Args, Value (*function)(Args...)>
+struct NoThrow<function> {
+    static Value call(Args... args) noexcept {
+        try {
+            return function(args...);
+        } catch (...) {
+            if constexpr (!std::is_void_v<Value>)
+                return OVC_ERROR_OUT_OF_MEMORY;
+        }
+    }
+};
+
+/// A function of the ABI, for a table that C calls. Before and behind guard() it may throw for want
+/// of memory, as where it has a message about a handle that is none. This throws nothing.
+template <auto function>
+inline constexpr auto no_throw = NoThrow<function>::call;
 
 } // namespace ovc

@@ -5,6 +5,7 @@
 #include "plugin/abi/submission.h"
 
 #include <cassert>
+#include <new>
 
 namespace ovc {
 
@@ -30,7 +31,10 @@ void Submissions::stop() {
         const std::lock_guard lock(mutex_);
         stopped_ = true;
         for (const auto& submission : waiting_)
-            submission->cancel();
+            try {
+                submission->cancel();
+            } catch (const std::bad_alloc&) { // it is cancelled when its turn comes
+            }
         changed_.notify_all();
     }
     if (thread_.joinable())

@@ -2,13 +2,13 @@
 // The table of overcast_ranks.h.
 #include "plugin/overcast_ranks.h"
 
+#include "core/system/caught_error.h"
 #include "plugin/abi/ray_call.h"
 #include "plugin/abi/scene_call.h"
 #include "plugin/ranks/transport/mpi_transport.h"
 #include "plugin/ranks/transport/notes.h"
 
 #include <cstdlib>
-#include <exception>
 #include <memory>
 #include <string>
 
@@ -36,23 +36,23 @@ std::span<const std::byte> span_of(const void* bytes, size_t size) {
     return {static_cast<const std::byte*>(bytes), size};
 }
 
-ovc_result failed(const Error& error) {
-    host_ranks().error = error.message;
+ovc_result failed(Error error) noexcept {
+    host_ranks().error = std::move(error.message);
     return error.kind == ErrorKind::Cancelled ? OVC_ERROR_CANCELLED : OVC_ERROR_INTERNAL;
 }
 
 /// Runs body(), which returns a Result; nothing that it throws leaves the library.
 template <class Body>
 ovc_result guarded(const void* bytes, size_t size, ovc_take_function take, Body&& body) {
-    if (!take || (!bytes && size > 0)) {
-        host_ranks().error = "ovc_ranks: take is NULL, or bytes is and size is not 0";
-        return OVC_ERROR_INVALID_ARGUMENT;
-    }
     try {
+        if (!take || (!bytes && size > 0)) {
+            host_ranks().error = "ovc_ranks: take is NULL, or bytes is and size is not 0";
+            return OVC_ERROR_INVALID_ARGUMENT;
+        }
         const Result<Done> done = body();
         return done ? OVC_OK : failed(done.error());
-    } catch (const std::exception& error) {
-        return failed({error.what()});
+    } catch (...) {
+        return failed(caught_error());
     }
 }
 
@@ -105,7 +105,7 @@ bool open(double timeout_seconds) {
                  gather,
                  spread,
                  [](int code) { abort_all_ranks(code); },
-                 first_ranks};
+                 no_throw<first_ranks>};
     return true;
 }
 
@@ -113,6 +113,10 @@ bool open(double timeout_seconds) {
 } // namespace ovc
 
 extern "C" const ovc_ranks* ovc_get_ranks(double timeout_seconds) {
-    ovc_ranks& table = ovc::host_ranks().table;
-    return table.struct_size || ovc::open(timeout_seconds) ? &table : nullptr;
+    try {
+        ovc_ranks& table = ovc::host_ranks().table;
+        return table.struct_size || ovc::open(timeout_seconds) ? &table : nullptr;
+    } catch (...) { // there is no memory
+        return nullptr;
+    }
 }
