@@ -12,7 +12,6 @@ namespace ovc {
 namespace {
 
 using Complex = std::complex<double>;
-using P = FractalParameter;
 
 double square(const Complex& z) {
     return z.real() * z.real() + z.imag() * z.imag();
@@ -51,6 +50,7 @@ struct Orbit {
 };
 
 Orbit orbit(const std::array<double, 10>& p, const dvec3& at) {
+    using P = FractalParameter;
     const Complex here(at.x, at.y);
     const bool is_julia = p[P::kIsJulia] != 0;
     const int exponent = int(p[P::kExponent]);
@@ -86,6 +86,7 @@ double part_of_last(const Complex& z, int kind) {
 }
 
 double inside(const std::array<double, 10>& p, const Orbit& orbit) {
+    using P = FractalParameter;
     const int kind = int(p[P::kInterior]);
     const double value = kind == 1   ? std::sqrt(orbit.nearest)
                          : kind == 6 ? square(orbit.last)
@@ -94,6 +95,7 @@ double inside(const std::array<double, 10>& p, const Orbit& orbit) {
 }
 
 double outside(const std::array<double, 10>& p, const Orbit& orbit) {
+    using P = FractalParameter;
     const double factor = p[P::kExteriorFactor];
     switch (const int kind = int(p[P::kExterior]); kind) {
     case 1:
