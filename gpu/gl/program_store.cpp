@@ -5,13 +5,10 @@
 
 #include "core/file/archive.h"
 #include "core/file/mapped_file.h"
+#include "core/file/replace_file.h"
 #include "core/text/format_text.h"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <atomic>
 #include <cstdlib>
 
 namespace ovc {
@@ -53,20 +50,6 @@ bool has_format(GLenum format) {
     if (!formats.empty())
         glGetIntegerv(GL_PROGRAM_BINARY_FORMATS, formats.data());
     return std::find(formats.begin(), formats.end(), GLint(format)) != formats.end();
-}
-
-/// Writes all bytes to a new file. Returns false if any are missing.
-bool write_file(const fs::path& path, Bytes bytes) {
-    const int file = open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
-    if (file < 0)
-        return false;
-    while (!bytes.empty()) {
-        const ssize_t written = write(file, bytes.data(), bytes.size());
-        if (written <= 0)
-            break;
-        bytes = bytes.subspan(size_t(written));
-    }
-    return close(file) == 0 && bytes.empty();
 }
 
 } // namespace
@@ -146,11 +129,7 @@ void ProgramStore::keep(const std::vector<std::string>& sources, GLuint program)
 
     std::error_code failed;
     fs::create_directories(folder_, failed);
-    static std::atomic<uint32_t> count{0};
-    const fs::path temporary = folder_ / format_text(".{}-{}", getpid(), count++);
-    if (write_file(temporary, bytes))
-        fs::rename(temporary, file_of(key_of(sources, who)), failed);
-    fs::remove(temporary, failed); // if writing or renaming failed
+    replace_file(file_of(key_of(sources, who)), bytes);
     make_room();
 }
 

@@ -5,10 +5,12 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <chrono>
 #include <fstream>
 #include <random>
 #include <thread>
+#include <vector>
 
 namespace ovc {
 namespace {
@@ -158,6 +160,36 @@ TEST_F(Tuning, ADamagedFileIsNone) {
     EXPECT_EQ(tuning().variants()[kKind].text(), default_variants(device)[kKind].text());
     EXPECT_FALSE(TuningFile(folder, "another driver").load());
     EXPECT_FALSE(TuningFile({}, "driver").load());
+}
+
+/// A process has a thread for each device, and devices of one driver share a record.
+TEST_F(Tuning, ThreadsThatKeepARecordAtOnceLeaveAWholeOne) {
+    const TuningFile file(folder, "driver");
+    TuningRecord chosen; // a long text
+    chosen.chosen.fill(default_variants(device)[kKind]);
+    const auto keep_often = [&](const TuningRecord& record) {
+        for (int i = 0; i < 300; ++i)
+            file.keep(record);
+    };
+    file.keep(chosen);
+    std::atomic<bool> ends{false};
+    std::vector<std::jthread> threads;
+    for (int i = 0; i < 2; ++i) {
+        threads.emplace_back(keep_often, chosen);
+        threads.emplace_back(keep_often, TuningRecord{});
+    }
+    std::jthread reader([&] {
+        while (!ends) {
+            const std::optional<TuningRecord> found = file.load();
+            ASSERT_TRUE(found);
+            EXPECT_TRUE(found->chosen == chosen.chosen || found->chosen == TuningRecord{}.chosen);
+        }
+    });
+    threads.clear();
+    ends = true;
+    reader.join();
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 1)
+        << "a temporary file is left";
 }
 
 } // namespace

@@ -2,10 +2,9 @@
 #include "gpu/tuning/tuning_record.h"
 
 #include "core/file/checksum.h"
+#include "core/file/replace_file.h"
 #include "core/text/format_text.h"
 #include "shaders/sources.h"
-
-#include <unistd.h>
 
 #include <charconv>
 #include <fstream>
@@ -74,12 +73,8 @@ void TuningFile::keep(const TuningRecord& record) const {
         return;
     std::error_code failed;
     fs::create_directories(path_.parent_path(), failed);
-    const fs::path temporary = path_.string() + format_text(".{}", getpid());
-    const bool written =
-        bool(std::ofstream(temporary, std::ios::binary) << record.text() << std::flush);
-    if (written)
-        fs::rename(temporary, path_, failed);
-    fs::remove(temporary, failed);
+    const std::string text = record.text();
+    replace_file(path_, bytes_of(std::span<const char>(text)));
 }
 
 } // namespace ovc
