@@ -156,6 +156,13 @@ TEST_F(Tuning, ADamagedFileIsNone) {
     for (const char* other : {"", "overcast kernel variants 0", "overcast kernel variants 1\nkind",
                               "overcast kernel variants 1\nmicroseconds x"})
         EXPECT_FALSE(TuningRecord::from_text(other)) << other;
+    for (size_t at = 0; at < text.size(); ++at) {
+        EXPECT_FALSE(TuningRecord::from_text(text.substr(0, at))) << at;
+        std::string changed = text;
+        changed[at] ^= 1;
+        EXPECT_FALSE(TuningRecord::from_text(changed)) << changed;
+    }
+    EXPECT_FALSE(TuningRecord::from_text(text + text));
     std::ofstream(file) << text << "kind 99 compute";
     EXPECT_EQ(tuning().variants()[kKind].text(), default_variants(device)[kKind].text());
     EXPECT_FALSE(TuningFile(folder, "another driver").load());

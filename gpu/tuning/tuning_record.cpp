@@ -6,7 +6,7 @@
 #include "core/text/format_text.h"
 #include "shaders/sources.h"
 
-#include <charconv>
+#include <algorithm>
 #include <fstream>
 #include <sstream>
 
@@ -15,7 +15,13 @@ namespace ovc {
 namespace fs = std::filesystem;
 
 // To be counted up whenever C++ changes what a variant means; kernels are in the file's name.
-static constexpr std::string_view kFirstLine = "overcast kernel variants 2";
+static constexpr std::string_view kFirstLine = "overcast kernel variants 3";
+
+/// Returns the last line, which tells a whole text from one that was cut or changed.
+static std::string checksum_line(const std::string& text) {
+    const uint64_t checksum = checksum_of(bytes_of(std::span<const char>(text)));
+    return format_text("checksum {}\n", hexadecimal(checksum, 16));
+}
 
 std::string TuningRecord::text() const {
     std::string text(kFirstLine);
@@ -23,11 +29,15 @@ std::string TuningRecord::text() const {
     for (size_t kind = 0; kind < chosen.size(); ++kind)
         if (chosen[kind])
             text += format_text("kind {} {}\n", kind, chosen[kind]->text());
-    return text;
+    return text + checksum_line(text);
 }
 
 std::optional<TuningRecord> TuningRecord::from_text(const std::string& text) {
-    std::istringstream lines(text);
+    const size_t end = std::min(text.rfind("checksum "), text.size());
+    const std::string checked = text.substr(0, end);
+    if (text.substr(end) != checksum_line(checked))
+        return {};
+    std::istringstream lines(checked);
     std::string line, word, variant;
     if (!std::getline(lines, line) || line != kFirstLine)
         return {};
