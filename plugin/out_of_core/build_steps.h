@@ -20,19 +20,19 @@ public:
         if (!keeper || keeper->kept().empty())
             return;
         uint64_t end = 0;
-        ByteReader reader(keeper->kept().back());
+        ByteReader reader(checked(keeper->kept().back()));
         reader(end);
         scratch_.go_on_at(end);
     }
 
     /// Takes the values of the next step. Returns false where no earlier build came so far. Throws
-    /// a Failure where the step has other values.
+    /// a Failure where the step is damaged or has other values.
     template <class... T>
     bool take(T&... values) {
         if (!keeper_ || next_ == keeper_->kept().size())
             return false;
         uint64_t end = 0;
-        ByteReader reader(keeper_->kept()[next_++]);
+        ByteReader reader(checked(keeper_->kept()[next_++]));
         reader(end, values...);
         if (!reader.done())
             fail();
@@ -46,6 +46,7 @@ public:
             return;
         ByteWriter writer;
         writer(scratch_.bytes(), values...);
+        writer(checksum_of(writer.bytes()));
         keeper_->keep(writer.bytes());
     }
 
@@ -62,6 +63,20 @@ public:
     }
 
 private:
+    /// Returns a step without the checksum at its end. Throws a Failure where that is not the one
+    /// of the other bytes: readers believe planes, boxes and counts, which make a wrong scene file.
+    static Bytes checked(Bytes step) {
+        uint64_t checksum = 0;
+        if (step.size() < sizeof(checksum))
+            fail();
+        const Bytes values = step.first(step.size() - sizeof(checksum));
+        ByteReader reader(step.last(sizeof(checksum)));
+        reader(checksum);
+        if (checksum_of(values) != checksum)
+            fail();
+        return values;
+    }
+
     StepKeeper* const keeper_;
     ScratchSpace& scratch_;
     size_t next_ = 0;

@@ -288,5 +288,42 @@ TEST_F(StreamedBuild, RefusesStepsThatAreDamagedOrOfAnotherBuild) {
                    [](SteppedBuild& again, auto&) { again.scratch.spoil(0); });
 }
 
+/// Lengths tell nothing of a bit in a box or in a plane, and a count that grew would ask for memory
+/// that nobody has.
+TEST_F(StreamedBuild, RefusesStepsOfWhichAnyByteHasChangedOrIsMissing) {
+    const Soup soup = test::closed_grid(25);
+    SteppedBuild whole{soup};
+    StepMemory keeper;
+    whole.run(keeper);
+    ASSERT_GE(whole.steps.size(), 4u) << "the key, what was dealt, pairs and a cell";
+    const auto expect_refused = [&](const auto& steps) {
+        SteppedBuild again{soup, ScratchMemory(whole.scratch)};
+        StepMemory found(steps, whole.saved.bytes());
+        try {
+            again.run(found);
+            ADD_FAILURE() << "the step was believed";
+        } catch (const Failure& failure) {
+            EXPECT_EQ(failure.code, OVC_ERROR_UNREADABLE) << failure.message;
+        } catch (const std::exception& thrown) {
+            ADD_FAILURE() << thrown.what();
+        }
+    };
+    auto steps = whole.steps;
+    for (size_t step = 0; step < steps.size(); ++step)
+        for (size_t at = 0; at < steps[step].size(); ++at) {
+            SCOPED_TRACE(testing::Message() << "byte " << at << " of step " << step);
+            steps[step][at] ^= std::byte(1u << at % 8);
+            expect_refused(steps);
+            steps[step][at] = whole.steps[step][at];
+        }
+    for (size_t step = 0; step < steps.size(); ++step)
+        for (const size_t size : {size_t(0), size_t(7), steps[step].size() - 1}) {
+            SCOPED_TRACE(testing::Message() << size << " bytes of step " << step);
+            steps[step].resize(size);
+            expect_refused(steps);
+            steps[step] = whole.steps[step];
+        }
+}
+
 } // namespace
 } // namespace ovc
