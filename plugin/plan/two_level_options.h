@@ -41,8 +41,10 @@ struct TwoLevelOptions {
     std::optional<bool> beside;
     uint64_t driver_bytes = ~uint64_t(0); // for tests: as in MemoryPlan
     uint64_t buffer_bytes = 0;            // for tests: as in plan_memory()
-    LeafStore* store = nullptr;           // reads what was saved, in place of the next
-    Bytes saved = {}; // from save() of a structure over the same soup; outlives this one
+    /// For tests: the max rays of a call that are numbered together, in 32 bits.
+    uint64_t max_numbered_rays = uint64_t(1) << 31;
+    LeafStore* store = nullptr; // reads what was saved, in place of the next
+    Bytes saved = {};           // from save() of a structure over the same soup; outlives this one
     /// Returns which pages of a scene that is cut and packed are traced here; null: all. Others are
     /// dropped (keep_pages.h).
     std::function<PagesKept(const BuiltScene&)> choose_pages;

@@ -17,11 +17,18 @@ namespace ovc {
 template <class Query>
 class OnePass {
 public:
-    OnePass(const Tracing& tracing, PassRunner& passes, const Query& query)
+    /// Answers `count` rays of the query, `first` and those behind it. Rays go by numbers of 32
+    /// bits, which count from `first`.
+    OnePass(const Tracing& tracing, PassRunner& passes, const Query& query, size_t first,
+            size_t count)
         : watch_(tracing.watch),
           passes_(passes),
-          query_(query),
-          resolver_(tracing, query, /* are_whole= */ true) {}
+          query_(query.part(first, count)),
+          rays_before_(first),
+          rays_of_call_(query.rays.size()),
+          resolver_(tracing, query_, /* are_whole= */ true) {
+        assert(count <= size_t(1) << 32);
+    }
 
     Result<Done> run() {
         assert(passes_.all_resident());
@@ -40,7 +47,7 @@ public:
         begin_next();
         size_t traced = 0;
         while (finished < begun) {
-            if (Result<Done> asked = watch_.go_on(traced, query_.rays.size()); !asked)
+            if (Result<Done> asked = watch_.go_on(rays_before_ + traced, rays_of_call_); !asked)
                 return asked;
             Batch& done = batches[finished++ % batches.size()];
             if (const Result<Done> passed = passes_.finish_pass(done); !passed)
@@ -119,9 +126,23 @@ private:
     CallWatch& watch_;
     PassRunner& passes_;
     const Query query_;
+    const size_t rays_before_; // of the call
+    const size_t rays_of_call_;
     Resolver<Query> resolver_;
     size_t next_ = 0; // the first ray of the query that has not begun
     std::vector<size_t> block_rays_;
 };
+
+/// Answers the query by one OnePass for each options.max_numbered_rays rays of it.
+template <class Query>
+Result<Done> trace_in_one_pass(const Tracing& tracing, PassRunner& passes, const Query& query) {
+    const size_t max = tracing.options.max_numbered_rays;
+    for (size_t first = 0; first < query.rays.size(); first += max) {
+        const size_t count = std::min(max, query.rays.size() - first);
+        if (Result<Done> done = OnePass(tracing, passes, query, first, count).run(); !done)
+            return done;
+    }
+    return Done{};
+}
 
 } // namespace ovc

@@ -50,7 +50,7 @@ Result<Done> TwoLevel::trace(const Query& query) {
     if (!use)
         return use.error();
     const bool in_one_pass = passes_.all_resident() && !query.has_sieves();
-    const Result<Done> done = in_one_pass ? OnePass(tracing_, passes_, query).run()
+    const Result<Done> done = in_one_pass ? trace_in_one_pass(tracing_, passes_, query)
                                           : trace_in_waves(tracing_, passes_, query);
     if (!done)
         return done;

@@ -144,7 +144,17 @@ TEST_F(TwoLevelGl, AnyBudgetNearThatOfAllPagesAnswersAlike) {
     EXPECT_GT(resident, 0u);
 }
 
+/// Keeps the share of the rays that it was told last.
+struct Listens final : TraceWatch {
+    double told = 0;
+    bool goes_on(double done) override {
+        told = done;
+        return true;
+    }
+};
+
 /// There are so many rays that they come in several parts, one of which has no ray for the kernel.
+/// So many that 32 bits do not number them all are as those of which 17 bits do not.
 TEST_F(TwoLevelGl, ManyRaysAreAnsweredAsFewAre) {
     const Soup soup = test::closed_grid(60);
     std::vector<Ray> rays = test::rays_from_outside(11, 300000);
@@ -154,24 +164,31 @@ TEST_F(TwoLevelGl, ManyRaysAreAnsweredAsFewAre) {
             ray.dir = -ray.dir; // away from the scene
     for (size_t i = 70000; i < 230000; ++i)
         rays[i].t_max = -1; // invalid
-    const auto linked = build(soup, {});
+    const auto linked = build(soup, {}), numbered = build(soup, {.max_numbered_rays = 1u << 17});
     const auto moving = build(soup, {.budget_bytes = 192u << 10, .leaf_triangles = 300});
-    ASSERT_TRUE(linked && moving);
-    std::vector<Hit> hits(rays.size()), expected(rays.size());
-    ASSERT_TRUE(ok(linked->intersect(rays, {}, hits)));
+    ASSERT_TRUE(linked && numbered && moving);
+    std::vector<Hit> expected(rays.size());
     ASSERT_TRUE(ok(moving->intersect(rays, {}, expected)));
-    for (size_t i = 0; i < rays.size(); ++i)
-        ASSERT_TRUE(test::same(hits[i], expected[i])) << "ray " << i;
-    EXPECT_GT(linked->statistics().passes, 1u);
-    EXPECT_EQ(linked->statistics().pages_in, linked->scene().level1.leaves.size());
-    EXPECT_GT(moving->statistics().pages_in, moving->scene().level1.leaves.size());
-    EXPECT_EQ(linked->statistics().invalid_rays, 160000u);
-    EXPECT_LT(linked->statistics().ray_visits, 140000u);
+    for (TwoLevel* all : {linked.get(), numbered.get()}) {
+        std::vector<Hit> hits(rays.size());
+        ASSERT_TRUE(ok(all->intersect(rays, {}, hits)));
+        for (size_t i = 0; i < rays.size(); ++i)
+            ASSERT_TRUE(test::same(hits[i], expected[i])) << "ray " << i;
+        EXPECT_GT(all->statistics().passes, 1u);
+        EXPECT_EQ(all->statistics().pages_in, all->scene().level1.leaves.size());
+        EXPECT_EQ(all->statistics().invalid_rays, 160000u);
+        EXPECT_LT(all->statistics().ray_visits, 140000u);
 
-    std::vector<uint8_t> occluded(rays.size());
-    ASSERT_TRUE(ok(linked->occluded(rays, {}, occluded)));
-    for (size_t i = 0; i < rays.size(); ++i)
-        ASSERT_EQ(occluded[i] != 0, expected[i].is_hit()) << "ray " << i;
+        std::vector<uint8_t> occluded(rays.size());
+        ASSERT_TRUE(ok(all->occluded(rays, {}, occluded)));
+        for (size_t i = 0; i < rays.size(); ++i)
+            ASSERT_EQ(occluded[i] != 0, expected[i].is_hit()) << "ray " << i;
+    }
+    EXPECT_GT(moving->statistics().pages_in, moving->scene().level1.leaves.size());
+    Listens watch;
+    const CallWatch::Scope scope(numbered->call_watch(), &watch);
+    ASSERT_TRUE(ok(numbered->intersect(rays, {}, expected)));
+    EXPECT_GT(watch.told, 0.8) << "of all rays, before the last pass of the third part";
 }
 
 /// The compute kernel takes neighbours together where they go the same way, and others in turns.
