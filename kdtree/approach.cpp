@@ -54,6 +54,10 @@ dvec3 main_direction(const dvec3& dir) {
 }
 
 bool is_near(const PreparedRay& p, const Box& bounds) {
+    // Else products of a direction or a t with lengths may leave the range of doubles.
+    const double longest = std::abs(p.ray.dir[p.kz]);
+    if (longest < 0x1p-500 || longest > 0x1p500)
+        return false;
     for (int axis = 0; axis < 3; ++axis)
         if (p.ray.dir[axis] != 0 && !std::isfinite(p.inv_dir[axis]))
             return false;
@@ -70,9 +74,10 @@ Approach::Approach(const PreparedRay& p, const Box& bounds) : p_(p) {
     Ray ray = p.ray;
     for (int axis = 0; t && axis < 3; ++axis)
         ray.org[axis] = rounded(Exact(p.ray.org[axis]) + *t * Exact(p.ray.dir[axis]));
-    ray.dir = main_direction(p.ray.dir);
-    ray.t_min = t ? down(rounded(Exact(p.ray.t_min) - *t)) : 0;
-    ray.t_max = t ? up(rounded(Exact(p.ray.t_max) - *t)) : 0;
+    const int exponent = std::ilogb(p.ray.dir[p.kz]);
+    ray.dir = glm::ldexp(main_direction(p.ray.dir), glm::ivec3(-exponent));
+    ray.t_min = t ? down(std::ldexp(rounded(Exact(p.ray.t_min) - *t), exponent)) : 0;
+    ray.t_max = t ? up(std::ldexp(rounded(Exact(p.ray.t_max) - *t), exponent)) : 0;
     moved_.emplace(ray, p.skip);
     moved_->org_error = 0x1p-52 * max_component(glm::abs(ray.org)) + 0x1p-1022;
     limit_ = t ? ray.t_max : -kLargest;

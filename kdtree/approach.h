@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Approach: begins a ray from far away anew beside the scene, so that doubles suffice to walk a
 // tree along it. Without that, the rounding of a position along the ray may be larger than the
-// scene, and the ray would have to be tested against every triangle.
+// scene, and the ray would have to be tested against every triangle. A direction that is very short
+// or long gets a length near 1.
 #pragma once
 
 #include "core/exact/triangle.h"

@@ -92,6 +92,22 @@ TEST_F(Approaching, FewLeavesAreOnTheWayHoweverFarARayComesFrom) {
         }
 }
 
+/// The way through the scene takes longer than the largest double tells.
+TEST(ApproachingSlowly, FindsWhatLiesBeforeTheLargestDouble) {
+    for (const double x : {-1.1e8, -1.5e8, -2.6e8, -4e8}) {
+        const Soup soup = test::one_chunk({vec3(1, -1, -1), vec3(1, 3, -1), vec3(1, -1, 3),
+                                           vec3(x, 5, 5), vec3(x, 9, 5), vec3(x, 5, 9),
+                                           vec3(-x, 5, 5), vec3(-x, 9, 5), vec3(-x, 5, 9)});
+        Box bounds;
+        const std::vector<TriangleId> ids = hittable_triangles(soup, nullptr, &bounds);
+        const KdTree tree = build_kd_tree(soup, ids, bounds, {});
+        for (const double from : {-1e8, -9e7, -0.5e8}) {
+            const Hit hit = intersect(tree, soup, {dvec3(from, 0, 0), 0, dvec3(1e-300, 0, 0)}, {});
+            EXPECT_EQ(hit.id, (TriangleId{0, 0})) << x << " from " << from;
+        }
+    }
+}
+
 TEST_F(Approaching, NothingLiesBeyondTheLargestDouble) {
     const Ray ray{dvec3(1e308, 0, 0), 0, dvec3(-1e-300, 0, 0)};
     EXPECT_EQ(leaves_on_the_way(ray), 0u);

@@ -5,8 +5,9 @@
  *
  * Every call returns an ovc_result; on anything but OVC_OK, last_error() has one sentence. Nothing throws or exits. The caller owns
  * every buffer, and none is used after the call returns, except shared positions, what is saved, the functions that are handed in
- * with their user pointers, and the buffers of a submitted call (docs/reference/abi.md, "Lifetimes"). Structs that go in begin with struct_size = sizeof(the struct); every other field means "default" when zero. Structs
- * and the table only ever grow at their end: the struct_size of an earlier header is fine. The manual is docs/reference/abi.md.
+ * with their user pointers, and the buffers of a submitted call (docs/reference/abi.md, "Lifetimes").
+ * Structs that go in begin with struct_size = sizeof(the struct); every other field means "default" when zero. Structs and the
+ * table only ever grow at their end: the struct_size of an earlier header is fine. The manual is docs/reference/abi.md.
  * Calls may come from any thread, of 256 KiB of stack at least; calls on one scene wait their turn, first come, first served. The
  * caller's GL context, floating-point state and environment are left alone, except by prepare_process(): each device has a thread of
  * its own. The functions that a caller hands in for errors, logs, progress and what is saved may call last_error and nothing else.
@@ -70,7 +71,8 @@ typedef enum ovc_ray_format {
 } ovc_ray_format;
 
 /* The nearest hit, at org + t dir = (1-u-v) a + u b + v c of the triangle's corners a, b, c; equal t goes to the smaller
- * (mesh, prim). In certified precision t, u and v are the exact values, each rounded once to the nearest double. A miss: mesh = prim = OVC_NONE, t = infinity. 32 bytes. */
+ * (mesh, prim). A triangle that the ray sees exactly edge-on is not hit. In certified precision t, u and v are the exact values, each
+ * rounded once to the nearest double. A miss: mesh = prim = OVC_NONE, t = infinity. 32 bytes. */
 typedef struct ovc_hit {
     double t;
     double u;
@@ -662,15 +664,16 @@ typedef struct ovc_api {
 
     /* Writes the hits of each ray in the order of t, mesh and prim, the first max_hits of them: those of ray i from
      * hits[i * max_hits] on, and misses where there are fewer. counts: NULL, or ray_count numbers: how many hits the ray has in all.
-     * max_hits may be 0, and hits NULL then. query may be NULL; its skip, `after`, masks and filter tell which hits count. A ray of n hits
-     * takes O(n log n) time, however many of them lie in one point. */
+     * max_hits may be 0, and hits NULL then. query may be NULL; its skip, `after`, masks and filter tell which hits count. A ray of
+     * n hits takes O(n log n) time, however many of them lie in one point. */
     ovc_result (*all_hits)(ovc_scene scene, const ovc_ray* rays, size_t ray_count, size_t max_hits, ovc_hit* hits,
                            uint64_t* counts, const ovc_query* query);
 
     /* Changes of a scene, before its commit or after it. Once one of these, add_mesh or add_instance has succeeded, the scene takes
-     * no rays (OVC_ERROR_INVALID_STATE, for tickets that are under way too) until commit has brought it up to date; answers are then
-     * those of a scene built anew from what is there, bit for bit in certified precision. Commit rebuilds no more than it must:
-     * for moved instances the tree above the pages, for new positions what lies around them. */
+     * no rays (OVC_ERROR_INVALID_STATE, for tickets that are under way too) until commit has brought it up to date; only a change of
+     * what no ray can meet, such as a template, may leave it as it is. Answers are then those of a scene built anew from what is
+     * there, bit for bit in certified precision. Commit rebuilds no more than it must: for moved instances the tree above the pages,
+     * for new positions what lies around them. */
 
     /* Gives triangles of a mesh, from first_triangle on, new corners: `mesh` describes as many triangles as change, as in add_mesh,
      * with floats or doubles and the origin as there; transform and mask are NULL and 0, for these stay. All instances of the mesh

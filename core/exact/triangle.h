@@ -112,10 +112,11 @@ std::optional<Candidate> candidate(const PreparedRay& p, const Triangle& triangl
         reach[i] = size[i] + std::abs(z[i]);
     }
     // docs/design/numerics.md, "The reference": a projected corner is off by 6u reach, and an edge
-    // function by what that and its own roundings add up to.
+    // function by what that and its own roundings add up to. Where products underflow it is off by
+    // 2^-1074 times a coordinate more, at most 2^257.
     const auto edge_error = [&](int i, int j) {
         return 12 * u * (reach[i] * size[j] + reach[j] * size[i] + 12 * u * reach[i] * reach[j]) +
-               1e-300;
+               0x1p-814;
     };
     const double a = x[2] * y[1] - y[2] * x[1];
     const double b = x[0] * y[2] - y[0] * x[2];
@@ -132,13 +133,15 @@ std::optional<Candidate> candidate(const PreparedRay& p, const Triangle& triangl
         return in_doubt(p, triangle, id);
     const double area = a + b + c;
     const double t = (a * z[0] + b * z[1] + c * z[2]) / area * p.sz;
-    const double share = std::min(2 * (a_error + b_error + c_error) / std::abs(area), 1.0);
+    const double per_area = 1 / std::abs(area);
+    const double share = std::min(2 * (a_error + b_error + c_error) * per_area, 1.0);
     const double z_min = std::min({z[0], z[1], z[2]});
     const double z_max = std::max({z[0], z[1], z[2]});
-    const double t_error =
-        (share * (z_max - z_min) + 12 * u * std::max(std::abs(z_min), std::abs(z_max))) *
-            std::abs(p.sz) +
-        0x1p-1020;
+    const double underflow = 0x1p-1000 * (per_area + 1); // of products of z, and the quotient
+    const double t_error = (share * (z_max - z_min) +
+                            12 * u * std::max(std::abs(z_min), std::abs(z_max)) + underflow) *
+                               std::abs(p.sz) +
+                           0x1p-1020;
     if (t + t_error < p.ray.t_min || t - t_error > p.ray.t_max)
         return std::nullopt;
     if (!(t - t_error >= p.ray.t_min && t + t_error <= p.ray.t_max))

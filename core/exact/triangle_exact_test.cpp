@@ -159,6 +159,20 @@ const Coincidence kCoincidences[] = {
          ray = {r.below(2) ? 1e3 * r.point() : 100.0 * r.lattice(), 0, dvec3(0)};
          ray.dir = r.below(2) ? -ray.org : t[0][2] - ray.org;
      }},
+    {"a tiny way from it",
+     [](Lattice& r, std::vector<Triangle>& t, Ray& ray) {
+         const double way = std::ldexp(1.0, -600 - int(r.below(470)));
+         for (int i = 0; i < 4; ++i) {
+             const double size = std::ldexp(1.0, -int(r.below(250)));
+             t.push_back({size * r.point(), size * r.point(), dvec3(0)});
+             t[i][2] = -(t[i][0] + t[i][1]);
+             for (dvec3& corner : t[i])
+                 corner.z = i == 0 ? 0 : way * double(r.below(3));
+         }
+         ray = {dvec3(0, 0, -way), 0, dvec3(0, 0, 1)};
+         if (r.below(2))
+             (r.below(2) ? ray.t_min : ray.t_max) = way;
+     }},
     {"huge",
      [](Lattice& r, std::vector<Triangle>& t, Ray& ray) {
          for (int i = 0; i < 4; ++i)

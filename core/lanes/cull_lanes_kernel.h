@@ -95,7 +95,7 @@ struct Projected {
     OVC_INLINE V edge_error(int i, int j) const {
         constexpr double u = 0x1p-53;
         return 12 * u * (reach[i] * size[j] + reach[j] * size[i] + 12 * u * reach[i] * reach[j]) +
-               1e-300;
+               0x1p-814;
     }
 };
 
@@ -115,10 +115,12 @@ OVC_INLINE TestInDoubles<V> test_in_doubles(const CullRay& ray, const CullLanes&
     const V of_z = w.value[0] * p.z[0] + w.value[1] * p.z[1] + w.value[2] * p.z[2];
     test.t = of_z / area * ray.sz;
     const V errors = w.error[0] + w.error[1] + w.error[2];
-    const V share = smaller(2 * errors / magnitude(area), all_lanes<V>(1));
+    const V per_area = 1 / magnitude(area);
+    const V share = smaller(2 * errors * per_area, all_lanes<V>(1));
     const V z_min = smaller(smaller(p.z[0], p.z[1]), p.z[2]);
     const V z_max = larger(larger(p.z[0], p.z[1]), p.z[2]);
-    test.t_error = (share * (z_max - z_min) + 12 * u * larger(magnitude(z_min), magnitude(z_max))) *
+    test.t_error = (share * (z_max - z_min) + 12 * u * larger(magnitude(z_min), magnitude(z_max)) +
+                    0x1p-1000 * (per_area + 1)) *
                        magnitude(all_lanes<V>(ray.sz)) +
                    0x1p-1020;
     const MaskOf<V> before = test.t + test.t_error < ray.t_min;

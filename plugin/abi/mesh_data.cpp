@@ -25,18 +25,19 @@ void check_positions(const ovc_mesh& mesh) {
         invalid("ovc_mesh.positions and positions_double are both set; one says it all");
     if (!mesh.positions && !mesh.positions_double && mesh.vertex_count)
         invalid("ovc_mesh.positions is NULL");
-    if (mesh.positions_double) {
-        if (mesh.stride < 24 || mesh.stride % 8 ||
-            reinterpret_cast<uintptr_t>(mesh.positions_double) % 8)
-            invalid(format_text("ovc_mesh.stride is {}, expected 24 or more and, as "
-                                "positions_double, a multiple of 8",
-                                mesh.stride));
-        return;
-    }
-    if (mesh.stride < 12 || mesh.stride % 4 || reinterpret_cast<uintptr_t>(mesh.positions) % 4)
-        invalid(format_text(
-            "ovc_mesh.stride is {}, expected 12 or more and, as positions, a multiple of 4",
-            mesh.stride));
+    const auto check = [&](const char* name, const void* positions, size_t size) {
+        if (reinterpret_cast<uintptr_t>(positions) % size)
+            invalid(
+                format_text("ovc_mesh.{} is at an address that is no multiple of {}", name, size));
+        if (mesh.stride < 3 * size || mesh.stride % size)
+            invalid(format_text(
+                "ovc_mesh.stride is {}, expected {} or more and, as {}, a multiple of {}",
+                mesh.stride, 3 * size, name, size));
+    };
+    if (mesh.positions_double)
+        check("positions_double", mesh.positions_double, sizeof(double));
+    else
+        check("positions", mesh.positions, sizeof(float));
 }
 
 void check_counts(const ovc_mesh& mesh) {

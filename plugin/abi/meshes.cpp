@@ -82,15 +82,15 @@ Chunk& chunk_of_mesh(ovc_scene scene, uint32_t mesh_id) {
 /// Throws a Failure where the update is not of the same kind as the mesh, or beyond its end.
 void check_update(const ovc_mesh& update, uint64_t first, const Chunk& chunk) {
     if (update.transform || update.mask || update.flags & OVC_MESH_TEMPLATE)
-        invalid("update_mesh: ovc_mesh.transform, mask and flags cannot change; expected NULL, 0 "
-                "and at most OVC_MESH_SHARED");
+        invalid("update_mesh: ovc_mesh.transform and mask cannot change, nor whether the mesh is a "
+                "template; expected NULL, 0 and no OVC_MESH_TEMPLATE");
     for (int axis = 0; axis < 3; ++axis)
         if (update.origin[axis] != chunk.origin()[axis])
             invalid("update_mesh: ovc_mesh.origin is not that of the mesh, which cannot change");
     const uint64_t count = triangles_of(update);
     if (first > chunk.size() || count > chunk.size() - first)
-        invalid(format_text("update_mesh: triangles {} to {} are given, but the mesh has {}", first,
-                            first + count, chunk.size()));
+        invalid(format_text("update_mesh: {} triangles from {} on are given, but the mesh has {}",
+                            count, first, chunk.size()));
     if (count > 0 && (update.positions_double != nullptr) != !chunk.double_corners().empty())
         invalid("update_mesh: the mesh was added with positions of the other type, floats or "
                 "doubles");

@@ -27,7 +27,8 @@ public:
     };
 
     /// mode: of the thread that submits it.
-    Submission(const RayCall& call, const HostFloatMode& mode) : call_(call), mode_(mode) {}
+    Submission(const RayCall& call, const HostFloatMode& mode)
+        : call_(call), mode_(mode), was_cancelled_(format_text("{}: cancelled", call.name)) {}
 
     const RayCall& call() const { return call_; }
 
@@ -51,11 +52,11 @@ public:
     }
 
     /// Ends it at once where it has not begun, else soon. Any thread, as all that follow.
-    void cancel() {
+    void cancel() noexcept {
         const std::lock_guard lock(mutex_);
         cancelled_ = true;
         if (!begun_ && !done_)
-            finish({OVC_ERROR_CANCELLED, format_text("{}: cancelled", call_.name)});
+            finish({OVC_ERROR_CANCELLED, std::move(was_cancelled_)});
     }
     bool done() const {
         const std::lock_guard lock(mutex_);
@@ -73,9 +74,13 @@ public:
         ended_.wait(lock, [&] { return done_; });
         return outcome_;
     }
+    void wait_until_done() noexcept {
+        std::unique_lock lock(mutex_);
+        ended_.wait(lock, [&] { return done_; });
+    }
 
 private:
-    void finish(Outcome outcome) {
+    void finish(Outcome&& outcome) {
         assert(!done_);
         outcome_ = std::move(outcome);
         if (outcome_.result == OVC_OK)
@@ -93,6 +98,7 @@ private:
     std::condition_variable ended_;
     bool begun_ = false;
     bool done_ = false;
+    std::string was_cancelled_; // made early, so that cancel() needs no memory
     Outcome outcome_;
 };
 

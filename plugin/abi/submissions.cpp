@@ -5,7 +5,6 @@
 #include "plugin/abi/submission.h"
 
 #include <cassert>
-#include <new>
 
 namespace ovc {
 
@@ -31,10 +30,7 @@ void Submissions::stop() {
         const std::lock_guard lock(mutex_);
         stopped_ = true;
         for (const auto& submission : waiting_)
-            try {
-                submission->cancel();
-            } catch (const std::bad_alloc&) { // it is cancelled when its turn comes
-            }
+            submission->cancel();
         changed_.notify_all();
     }
     if (thread_.joinable())

@@ -115,7 +115,7 @@ void release(ovc_ticket ticket) {
         !ticket->magic.compare_exchange_strong(alive, kDestroyed))
         return;
     ticket->submission->cancel();
-    ticket->submission->wait([] {});
+    ticket->submission->wait_until_done();
     ticket->calls.wait_until_none();
     ovc_device device = ticket->device;
     device->released.add(std::unique_ptr<ovc_ticket_t>(ticket));

@@ -206,6 +206,11 @@ TEST_F(Instances, WhatMakesNoSenseIsRefused) {
          [&](ovc_mesh& m) {
              m.positions = nullptr, m.positions_double = &doubles[0].x, m.stride = 28;
          }},
+        {"positions is at an address that is no multiple of 4",
+         [&](ovc_mesh& m) {
+             m.positions =
+                 reinterpret_cast<const float*>(reinterpret_cast<const char*>(&corners[0].x) + 2);
+         }},
         {"OVC_MESH_SHARED needs stride 24",
          [&](ovc_mesh& m) {
              m.positions = nullptr, m.positions_double = &doubles[0].x, m.stride = 32;
