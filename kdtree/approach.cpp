@@ -75,9 +75,10 @@ Approach::Approach(const PreparedRay& p, const Box& bounds) : p_(p) {
     for (int axis = 0; t && axis < 3; ++axis)
         ray.org[axis] = rounded(Exact(p.ray.org[axis]) + *t * Exact(p.ray.dir[axis]));
     const int exponent = std::ilogb(p.ray.dir[p.kz]);
+    const Exact unit(std::ldexp(1.0, -exponent)); // of t along the new direction
     ray.dir = glm::ldexp(main_direction(p.ray.dir), glm::ivec3(-exponent));
-    ray.t_min = t ? down(std::ldexp(rounded(Exact(p.ray.t_min) - *t), exponent)) : 0;
-    ray.t_max = t ? up(std::ldexp(rounded(Exact(p.ray.t_max) - *t), exponent)) : 0;
+    ray.t_min = t ? down(Exact::quotient(Exact(p.ray.t_min) - *t, unit)) : 0;
+    ray.t_max = t ? up(Exact::quotient(Exact(p.ray.t_max) - *t, unit)) : 0;
     moved_.emplace(ray, p.skip);
     moved_->org_error = 0x1p-52 * max_component(glm::abs(ray.org)) + 0x1p-1022;
     limit_ = t ? ray.t_max : -kLargest;
