@@ -175,6 +175,15 @@ uint64_t Source::skip_rest() {
     return offset() - from;
 }
 
+std::string Source::rest() {
+    std::string all;
+    do {
+        all.append(reinterpret_cast<const char*>(buffer_.data()) + begin_, end_ - begin_);
+        begin_ = end_;
+    } while (fill(1));
+    return all;
+}
+
 Error Source::error_at_line(uint64_t line, std::string_view sentence) const {
     if (!damage_.empty())
         return error_at_byte(dropped_ + end_, damage_);

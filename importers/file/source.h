@@ -49,6 +49,8 @@ public:
     bool skip(uint64_t count);
     /// Returns how many bytes were left.
     uint64_t skip_rest();
+    /// Returns the bytes that are left.
+    std::string rest();
 
     /// Returns the number of (uncompressed) bytes given out so far.
     uint64_t offset() const { return dropped_ + begin_; }

@@ -5,11 +5,13 @@
 #include "importers/file/source.h"
 #include "importers/file/text.h"
 #include "importers/mesh/assimp_look.h"
+#include "importers/mesh/gltf.h"
 #include "importers/pbrt/look/exposure.h"
 #include "importers/readers.h"
 
 #include <assimp/DefaultIOSystem.h>
 #include <assimp/Importer.hpp>
+#include <assimp/MemoryIOWrapper.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <fmt/format.h>
@@ -181,30 +183,36 @@ std::vector<std::string> left_out_of(const aiScene& found, bool has_camera,
     return sentences;
 }
 
-/// Opens files for Assimp, and notes each one.
+/// Opens files for Assimp, and notes each one; one of them may lie in memory.
 class NotingFiles final : public Assimp::DefaultIOSystem {
 public:
-    explicit NotingFiles(FilesRead& files) : files_(files) {}
+    /// files: may be null.
+    explicit NotingFiles(FilesRead* files) : files_(files) {}
+
+    /// bytes: kept by reference.
+    void put(const std::string& name, std::string_view bytes) {
+        name_ = name;
+        bytes_ = bytes;
+    }
+
+    bool Exists(const char* file) const override {
+        return file == name_ || DefaultIOSystem::Exists(file);
+    }
 
     Assimp::IOStream* Open(const char* file, const char* mode) override {
-        files_.note(file);
+        if (!name_.empty() && file == name_)
+            return new Assimp::MemoryIOStream(reinterpret_cast<const uint8_t*>(bytes_.data()),
+                                              bytes_.size());
+        if (files_)
+            files_->note(file);
         return DefaultIOSystem::Open(file, mode);
     }
 
 private:
-    FilesRead& files_;
+    FilesRead* const files_;
+    std::string name_;
+    std::string_view bytes_;
 };
-
-/// Returns the whole file, uncompressed.
-std::vector<unsigned char> contents(Source& source) {
-    constexpr size_t kBlock = size_t(1) << 16;
-    std::vector<unsigned char> all;
-    while (const unsigned char* block = source.bytes(kBlock))
-        all.insert(all.end(), block, block + kBlock);
-    while (const unsigned char* byte = source.bytes(1))
-        all.push_back(*byte);
-    return all;
-}
 
 std::filesystem::path plain_name(const std::filesystem::path& path) {
     return path.extension() == ".gz" ? path.stem() : path;
@@ -221,9 +229,20 @@ const aiScene* read(Assimp::Importer& importer, Source& source, const std::files
     if (!source.is_compressed())
         return importer.ReadFile(path.string(), 0);
     const std::string extension = plain_name(path).extension().string();
-    const std::vector<unsigned char> all = contents(source);
+    const std::string all = source.rest();
     return importer.ReadFileFromMemory(all.data(), all.size(), 0,
                                        extension.empty() ? "" : extension.c_str() + 1);
+}
+
+/// Reads a glTF file that was made ready, and what it names beside it.
+const aiScene* read(Assimp::Importer& importer, NotingFiles& files, const GltfFile& file,
+                    const std::filesystem::path& path) {
+    std::filesystem::path name = path;
+    if (name.extension() == ".gz")
+        name.replace_extension();
+    name.replace_extension(file.is_binary ? "glb" : "gltf");
+    files.put(name.string(), file.bytes);
+    return importer.ReadFile(name.string(), 0);
 }
 
 } // namespace
@@ -237,9 +256,17 @@ Result<Scene> read_assimp(const std::filesystem::path& path, const ImportOptions
     if (!source)
         return source.error();
     Assimp::Importer importer;
-    if (options.files)
-        importer.SetIOHandler(new NotingFiles(*options.files)); // the importer deletes it
-    const aiScene* found = read(importer, *source, path);
+    auto* const files = new NotingFiles(options.files);
+    importer.SetIOHandler(files); // the importer deletes it
+    GltfFile gltf;
+    if (is_gltf(path)) {
+        Result<GltfFile> ready = read_gltf_file(*source);
+        if (!ready)
+            return ready.error();
+        gltf = std::move(*ready);
+    }
+    const aiScene* found =
+        is_gltf(path) ? read(importer, *files, gltf, path) : read(importer, *source, path);
     Scene scene;
     scene.name = path.stem().string();
     std::vector<std::string> left_out;
@@ -254,6 +281,7 @@ Result<Scene> read_assimp(const std::filesystem::path& path, const ImportOptions
     }
     if (!found || source->is_damaged())
         return source->error(fmt::format("Assimp found: {}", importer.GetErrorString()));
+    left_out.insert(left_out.end(), gltf.left_out.begin(), gltf.left_out.end());
     for (const std::string& sentence : left_out)
         say(options.log, LogLevel::Warning, source->error(sentence).message);
     if (scene.materials.empty()) {

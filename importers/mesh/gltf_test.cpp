@@ -193,5 +193,104 @@ TEST(Gltf, PunctualLightsStandWhereTheirNodesDo) {
     EXPECT_THAT(read.warnings, testing::Not(testing::Contains(testing::HasSubstr("light"))));
 }
 
+/// Returns the error's sentence, or how many triangles there are.
+std::string failure_of(const std::string& text, const std::string& name = "a.gltf") {
+    const TestFolder folder;
+    folder.write(name, text);
+    return folder.failure(name);
+}
+
+/// Replaces the first `from`; the test fails if there is none.
+std::string with(std::string text, const std::string& from, const std::string& to) {
+    const size_t at = text.find(from);
+    EXPECT_NE(at, text.npos) << from;
+    return at == text.npos ? text : text.replace(at, from.size(), to);
+}
+
+/// data: a multiple of 4 bytes.
+std::string binary_gltf(std::string json, const std::string& data) {
+    json.append((4 - json.size() % 4) % 4, ' ');
+    const auto number = [](size_t n) {
+        return std::string{char(n), char(n >> 8), char(n >> 16), char(n >> 24)};
+    };
+    return "glTF" + number(2) + number(28 + json.size() + data.size()) + number(json.size()) +
+           "JSON" + json + number(data.size()) + std::string("BIN\0", 4) + data;
+}
+
+/// Assimp 5 crashes on skins without what is optional in them.
+TEST(Gltf, WhatIsDeformedIsShownAtRestAndSaid) {
+    const ReadGltf read = read_gltf(with(
+        gltf_of("{}", ",\"skins\":[{\"joints\":[0]}],\"animations\":[{}]",
+                "{\"mesh\":0,\"skin\":0,\"weights\":[0.5]}"),
+        "\"TEXCOORD_0\":1}", "\"TEXCOORD_0\":1,\"JOINTS_0\":99},\"targets\":[{\"POSITION\":77}]"));
+    EXPECT_EQ(read.scene.soup.triangle_count(), 1u);
+    EXPECT_THAT(read.warnings,
+                testing::ElementsAre(
+                    testing::HasSubstr("1 animation left out: what moves is shown at rest"),
+                    testing::HasSubstr("1 skin left out: meshes are shown in their rest form"),
+                    testing::HasSubstr(
+                        "1 set of morph weights left out: meshes are shown in their rest form")));
+}
+
+TEST(Gltf, DataThatLiesElsewhereIsAnError) {
+    const std::string sound = gltf_of("{}");
+    EXPECT_EQ(failure_of(sound), "1 triangles");
+    EXPECT_EQ(failure_of(with(sound, "\"count\":3", "\"count\":4")),
+              "a.gltf: found accessors[0] up to byte 48, expected no more than the 36 of its view");
+    EXPECT_EQ(failure_of(with(sound, "\"byteOffset\":36", "\"byteOffset\":40")),
+              "a.gltf: found bufferViews[1] at bytes 40 to 64, expected no more than the 60 of its "
+              "buffer");
+    EXPECT_EQ(failure_of(with(sound, "\"count\":3", "\"sparse\":{\"count\":1},\"count\":3")),
+              "a.gltf: found no indices in accessors[0].sparse");
+    EXPECT_EQ(failure_of(with(sound, "\"componentType\":5126", "\"componentType\":5121")),
+              "a.gltf: found POSITION in accessors[0], which is no VEC3 of floats");
+    EXPECT_EQ(failure_of(gltf_of("{}", "", "{\"mesh\":0,\"children\":[0]}")),
+              "a.gltf: found nodes[0] among its own descendants");
+}
+
+TEST(Gltf, ExtensionsThatAreNotShownAreNamed) {
+    const std::string required = ",\"extensionsRequired\":[\"KHR_texture_transform\",\"X_y\"]";
+    EXPECT_EQ(failure_of(gltf_of("{}", required)),
+              "a.gltf: found the required extension 'X_y', expected none but KHR_lights_punctual, "
+              "KHR_materials_ior, KHR_materials_transmission, KHR_texture_transform");
+    const ReadGltf read =
+        read_gltf(gltf_of("{\"extensions\":{\"KHR_materials_ior\":{},\"KHR_materials_unlit\":{}}}",
+                          ",\"extensionsRequired\":[\"KHR_materials_unlit\"]"));
+    EXPECT_THAT(read.warnings, testing::ElementsAre(testing::HasSubstr(
+                                   "the extension 'KHR_materials_unlit' left out")));
+}
+
+TEST(Gltf, VertexColorsAndUnevenTextureCoordinatesAreSaid) {
+    const ReadGltf read =
+        read_gltf(with(with(gltf_of("{}"), "\"TEXCOORD_0\":1", "\"TEXCOORD_0\":1,\"COLOR_0\":0"),
+                       "5126,\"count\":3,\"type\":\"VEC2\"", "5123,\"count\":3,\"type\":\"VEC2\""));
+    EXPECT_THAT(
+        read.warnings,
+        testing::ElementsAre(testing::HasSubstr("1 set of vertex colors left out"),
+                             testing::HasSubstr("1 set of texture coordinates left out: they are "
+                                                "no floats")));
+}
+
+TEST(Gltf, BrokenFilesSayWhere) {
+    const std::string sound = gltf_of("{}");
+    EXPECT_EQ(failure_of("{\n \"asset\": nonsense}"),
+              "a.gltf, line 2: found 'o' in column 12, expected JSON to go on");
+    EXPECT_EQ(failure_of("{\"asset\":{}"), "a.gltf, line 1: found the end of the file in column "
+                                           "12, expected JSON to go on");
+    EXPECT_EQ(failure_of("[]"), "a.gltf: found JSON that is no object, expected a glTF file");
+    EXPECT_EQ(failure_of("{}"), "a.gltf: found no version, expected glTF of version 2.0");
+    EXPECT_EQ(failure_of("{\"a\":" + std::string(300, '[') + std::string(300, ']') + "}"),
+              "a.gltf: found JSON more than 200 levels deep, expected fewer");
+    const size_t uri = sound.find(",\"uri\":\"data:application");
+    std::string without = sound;
+    without.erase(uri, sound.find('"', uri + 10) + 1 - uri);
+    const std::string binary = binary_gltf(without, std::string(60, '\0'));
+    EXPECT_EQ(failure_of(binary, "a.glb"), "1 triangles");
+    EXPECT_EQ(failure_of(gzip(binary), "a.glb.gz"), "1 triangles");
+    EXPECT_EQ(failure_of(binary.substr(0, 100), "a.glb"), "a.glb: found 100 bytes, expected " +
+                                                              std::to_string(binary.size()) +
+                                                              ", as its header says");
+}
+
 } // namespace
 } // namespace ovc
