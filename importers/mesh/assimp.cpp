@@ -292,8 +292,9 @@ Result<Scene> read_assimp(const std::filesystem::path& path, const ImportOptions
     for (unsigned m = 0; m < found->mNumMeshes; ++m) {
         const unsigned named = found->mMeshes[m]->mMaterialIndex;
         const size_t material = named < materials.size() ? named : 0;
-        add_mesh(scene, *found->mMeshes[m], materials[material],
-                 on_uv[material] || materials[material].cutout != kNone);
+        if (!materials[material].is_cut_away)
+            add_mesh(scene, *found->mMeshes[m], materials[material],
+                     on_uv[material] || materials[material].cutout != kNone);
     }
     if (!scene.lights.empty()) {
         scene.exposure = pbrt::fitting_exposure(scene);

@@ -14,6 +14,7 @@
 #include <cmath>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 
 namespace ovc {
@@ -200,11 +201,20 @@ void Looks::add_optics(const aiMaterial& source, Material& material) {
     }
 }
 
+/// Returns glTF's alpha mode; nothing for other formats.
+std::string alpha_mode_of(const aiMaterial& source) {
+    aiString mode;
+    return source.Get(AI_MATKEY_GLTF_ALPHAMODE, mode) == AI_SUCCESS ? mode.C_Str() : "";
+}
+
+float alpha_cutoff_of(const aiMaterial& source) {
+    return std::max(number_of(source, AI_MATKEY_GLTF_ALPHACUTOFF, 0.5f), 1e-6f);
+}
+
 /// glTF's alpha: a mask, or a share of light that chance stands for.
 void Looks::add_holes(const aiMaterial& source, const Image& color, AssimpMaterial& to) {
-    aiString mode;
-    if (source.Get(AI_MATKEY_GLTF_ALPHAMODE, mode) != AI_SUCCESS ||
-        (mode != aiString("MASK") && mode != aiString("BLEND")))
+    const std::string mode = alpha_mode_of(source);
+    if (mode != "MASK" && mode != "BLEND")
         return;
     Image opacity = color;
     opacity.image.channel = ImageTexture::Channel::Opacity;
@@ -214,17 +224,26 @@ void Looks::add_holes(const aiMaterial& source, const Image& color, AssimpMateri
     opacity.image.offset = vec3(0);
     opacity.image.otherwise = {vec3(1)};
     Cutout cutout{.texture = add_image(opacity)};
-    if (mode == aiString("MASK"))
-        cutout.threshold = std::max(number_of(source, AI_MATKEY_GLTF_ALPHACUTOFF, 0.5f), 1e-6f);
+    if (mode == "MASK")
+        cutout.threshold = alpha_cutoff_of(source);
     to.cutout = uint32_t(scene_.cutouts.size());
     scene_.cutouts.push_back(std::move(cutout));
+}
+
+/// Returns the share of light that a surface without holes stops: of glTF all but for BLEND, and
+/// none below the cutoff of a MASK.
+float opacity_of(const aiMaterial& source) {
+    const std::string mode = alpha_mode_of(source);
+    const float alpha = number_of(source, AI_MATKEY_OPACITY, 1);
+    if (mode == "MASK")
+        return alpha < alpha_cutoff_of(source) ? 0.0f : 1.0f;
+    return mode == "OPAQUE" ? 1.0f : alpha;
 }
 
 /// The base color tints glTF's transmission, but not the opacity that other formats know.
 void let_light_through(const aiMaterial& source, bool has_holes, Material& material) {
     const float factor = number_of(source, AI_MATKEY_TRANSMISSION_FACTOR, 0);
-    const float opacity = has_holes ? 1 : number_of(source, AI_MATKEY_OPACITY, 1);
-    const float share = factor > 0 ? factor : 1 - opacity;
+    const float share = factor > 0 ? factor : 1 - (has_holes ? 1 : opacity_of(source));
     if (!(share > 0))
         return;
     material.transmission = std::min(share, 1.0f);
@@ -253,6 +272,8 @@ AssimpMaterial Looks::add(const aiMaterial& source) {
             number_of(source, AI_MATKEY_GLTF_TEXTURE_SCALE(aiTextureType_NORMALS, 0), 1);
         material.normal_map = NormalMap{NormalMap::Kind::Tangent, add_image(*image), double(scale)};
     }
+    result.is_cut_away =
+        result.cutout == kNone && alpha_mode_of(source) == "MASK" && opacity_of(source) == 0;
     let_light_through(source, result.cutout != kNone, material);
     ai_real metallic = 0; // glTF's model is that of materials that have it
     if (material.transmission == 0 && source.Get(AI_MATKEY_METALLIC_FACTOR, metallic) == AI_SUCCESS)

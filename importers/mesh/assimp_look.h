@@ -14,8 +14,9 @@ namespace ovc {
 
 /// A material of the scene, and what its meshes need besides.
 struct AssimpMaterial {
-    uint32_t cutout = kNone; // index into Scene::cutouts
-    uint32_t uv_set = 0;     // the texture coordinates that its textures lie on
+    uint32_t cutout = kNone;  // index into Scene::cutouts
+    uint32_t uv_set = 0;      // the texture coordinates that its textures lie on
+    bool is_cut_away = false; // nothing of its meshes is seen
 };
 
 /// Adds the materials of a file to the scene, with their textures. left_out: receives the names of

@@ -160,6 +160,20 @@ TEST(Gltf, AlphaModesMakeHoles) {
     EXPECT_EQ(cutout(",\"alphaMode\":\"BLEND\"").value().threshold, 0);
 }
 
+TEST(Gltf, AlphaWithoutATextureFollowsItsMode) {
+    const auto of_mode = [](const std::string& mode) {
+        return read_gltf(gltf_of("{\"pbrMetallicRoughness\":{\"baseColorFactor\":[1,1,1,0.25]}" +
+                                 mode + "}"))
+            .scene;
+    };
+    EXPECT_EQ(of_mode("").materials[0].transmission, 0) << "OPAQUE has no use for alpha";
+    EXPECT_EQ(of_mode(",\"alphaMode\":\"BLEND\"").materials[0].transmission, 0.75f);
+    EXPECT_EQ(of_mode(",\"alphaMode\":\"MASK\"").soup.triangle_count(), 0u);
+    const Scene kept = of_mode(",\"alphaMode\":\"MASK\",\"alphaCutoff\":0.2");
+    EXPECT_EQ(kept.soup.triangle_count(), 1u);
+    EXPECT_EQ(kept.materials[0].transmission, 0);
+}
+
 TEST(Gltf, PunctualLightsStandWhereTheirNodesDo) {
     const ReadGltf read = read_gltf(gltf_of(
         "{}",
