@@ -164,6 +164,13 @@ uint64_t other_faces(const aiScene& scene) {
     return others;
 }
 
+uint64_t colored_meshes(const aiScene& scene) {
+    uint64_t colored = 0;
+    for (unsigned m = 0; m < scene.mNumMeshes; ++m)
+        colored += scene.mMeshes[m]->HasVertexColors(0);
+    return colored;
+}
+
 /// Returns a sentence for each kind of thing that the file has and the scene will not. textures:
 /// the names of the pictures that are not shown; lights: how many are left out.
 std::vector<std::string> left_out_of(const aiScene& found, bool has_camera,
@@ -179,6 +186,7 @@ std::vector<std::string> left_out_of(const aiScene& found, bool has_camera,
     leave_out(found.mNumCameras - (has_camera ? 1 : 0), has_camera ? "more camera" : "camera");
     leave_out(lights, "light");
     leave_out(found.mNumAnimations, "animation", ": what moves is shown at rest");
+    leave_out(colored_meshes(found), "set of vertex colors");
     leave_out(other_faces(found), "face", ": they have fewer than three corners");
     return sentences;
 }

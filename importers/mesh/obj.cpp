@@ -115,6 +115,7 @@ private:
     bool read_line(std::string_view line);
     bool read_other(std::string_view keyword, std::string_view rest);
     bool read_vertex(std::string_view rest);
+    void note_colors(std::string_view rest);
     bool read_normal(std::string_view rest);
     bool read_uv(std::string_view rest);
     bool read_face(std::string_view rest);
@@ -167,6 +168,7 @@ private:
     std::vector<Mesh> meshes_;
     std::unordered_map<std::string, size_t> mesh_ids_;
     size_t mesh_ = 0;
+    bool has_colors_ = false; // some vertex has
     bool mesh_known_ = false; // becomes false when object, group or material changes
     uint64_t waiting_ = 0;    // corners in all meshes that the sink has not got
 };
@@ -234,10 +236,21 @@ bool ObjReader::read_vertex(std::string_view rest) {
             return fail(fmt::format("found {}, expected a coordinate", found(word)));
         position[axis] = *value;
     }
+    if (!has_colors_ && !rest.empty())
+        note_colors(rest);
     if (is_finite(position))
         bounds_.add(position);
     vertices_.push_back(position);
     return true;
+}
+
+/// Three numbers behind the position are a color; one is a weight.
+void ObjReader::note_colors(std::string_view rest) {
+    for (int i = 0; i < 3; ++i)
+        if (!parse_float(next_word(rest)))
+            return;
+    has_colors_ = true;
+    warn("vertex colors", "vertex colors left out");
 }
 
 bool ObjReader::read_normal(std::string_view rest) {

@@ -403,6 +403,13 @@ private:
     std::vector<std::array<uint32_t, 3>> cut_;
 };
 
+bool has_colors(const PlyElement& vertices) {
+    for (const char* red : {"red", "diffuse_red", "r"})
+        if (vertices.find(red) >= 0)
+            return true;
+    return false;
+}
+
 template <class Rows, class V>
 Result<Scene> read_body(Source& source, const PlyHeader& header, const std::filesystem::path& path,
                         const ImportOptions& options) {
@@ -426,6 +433,8 @@ Result<Scene> read_body(Source& source, const PlyHeader& header, const std::file
                          counted(reader.too_short(), "polygon")));
     if (reader.lost_normals())
         warn("normals left out: some are zero or not finite");
+    if (const PlyElement* vertices = header.find("vertex"); vertices && has_colors(*vertices))
+        warn("vertex colors left out");
     if (reader.triangle_count() == 0)
         warn("it has no triangles");
     return reader.take(path.stem().string());

@@ -75,7 +75,10 @@ TEST(Ply, ExtraPropertiesElementsAndBlanksAreSkipped) {
               "property list uchar uint vertex_index\nproperty list uchar float texcoord\n"
               "end_header\n2 0.5 0.25 7 \n\n255 0 0 0 0 \n255 0 0 2 9 9 1\t\n"
               " 255 0 1 0 1\n255 .5 +1 0 0e0\n42\n1 3 0 1 2 0\n1 3 0 2 3 2 0.5 0.5\n"));
-    EXPECT_EQ(triangles_of(load(path)), kBentSquare);
+    std::vector<std::string> warnings;
+    EXPECT_EQ(triangles_of(load(path, gather(warnings))), kBentSquare);
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_EQ(folder.plain(warnings[0]), "extra.ply: vertex colors left out");
 }
 
 /// Returns `value` as a PLY type of this name stores it.
