@@ -11,27 +11,13 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <optional>
+#include <set>
 
 namespace ovc {
 
 namespace {
-
-/// "Kd 0.5" is a grey, as the format says. Returns nothing for "Kd spectral …" and "Kd xyz …".
-std::optional<vec3> parse_color(std::string_view text) {
-    vec3 color(0);
-    int count = 0;
-    for (; count < 3; ++count) {
-        const std::string_view word = next_word(text);
-        if (word.empty() && count == 1)
-            return vec3(color.x);
-        const auto value = parse_float(word);
-        if (!value || !std::isfinite(*value))
-            return std::nullopt;
-        color[count] = *value;
-    }
-    return glm::clamp(color, vec3(0), vec3(1));
-}
 
 /// Models from 3 up reflect; 9 only lets light through, and 10 only casts shadows.
 bool reflects(int illumination) {
@@ -80,11 +66,6 @@ struct Entry {
     }
 };
 
-std::optional<float> parse_share(std::string_view text) {
-    const auto value = parse_float(next_word(text));
-    return value && std::isfinite(*value) ? std::optional(*value) : std::nullopt;
-}
-
 /// map_aat begins like a texture but only switches antialiasing.
 bool is_texture(std::string_view keyword) {
     return (keyword.starts_with("map_") && keyword != "map_aat") || keyword == "bump" ||
@@ -93,10 +74,6 @@ bool is_texture(std::string_view keyword) {
 
 void note_texture(std::string_view keyword, std::string_view rest, uint64_t line,
                   LibraryMaterial& of) {
-    if (keyword == "Ke")
-        of.emits = parse_color(rest).value_or(vec3(0)) != vec3(0);
-    if (!is_texture(keyword))
-        return;
     const MtlTexture texture = parse_mtl_texture(keyword, rest, line);
     if (is_shown(texture)) {
         of.shown.push_back(texture);
@@ -107,44 +84,115 @@ void note_texture(std::string_view keyword, std::string_view rest, uint64_t line
         of.textures.push_back(std::move(item));
 }
 
-void read_line(std::string_view keyword, std::string_view rest, Entry& entry) {
-    if (keyword == "Kd")
-        entry.read.material.color = parse_color(rest).value_or(entry.read.material.color);
-    else if (keyword == "Ks")
-        entry.specular = parse_color(rest).value_or(entry.specular);
-    else if (keyword == "Tf")
-        entry.filter = parse_color(rest);
-    else if (keyword == "d")
-        entry.dissolve = parse_share(rest);
-    else if (keyword == "Tr")
-        entry.transparency = parse_share(rest);
-    else if (keyword == "Ni")
-        entry.ior = parse_double(next_word(rest)).value_or(1);
-    else if (keyword == "illum")
-        entry.illumination = parse_number<int>(next_word(rest)).value_or(0);
+/// Statements of the format that mean nothing here.
+bool is_ignored(std::string_view keyword) {
+    constexpr std::string_view kIgnored[] = {"Ka", "Ns", "map_aat", "sharpness"};
+    return std::ranges::find(kIgnored, keyword) != std::end(kIgnored);
 }
+
+class MtlReader {
+public:
+    MtlReader(Source& source, const LogSink& log) : source_(source), log_(log) {}
+
+    Result<std::vector<Entry>> read() {
+        while (const auto line = source_.line()) {
+            std::string_view rest = without_comment(*line);
+            const std::string_view keyword = next_word(rest);
+            if (keyword == "newmtl")
+                entries_.push_back({{Material{std::string(trimmed(rest))}}});
+            else if (!entries_.empty() && !keyword.empty())
+                read_line(keyword, rest, entries_.back());
+            if (error_)
+                return *error_;
+        }
+        if (source_.is_damaged())
+            return source_.error("");
+        return std::move(entries_);
+    }
+
+private:
+    void read_line(std::string_view keyword, std::string_view rest, Entry& entry) {
+        Material& material = entry.read.material;
+        if (keyword == "Kd")
+            material.color = color(keyword, rest).value_or(material.color);
+        else if (keyword == "Ks")
+            entry.specular = color(keyword, rest).value_or(entry.specular);
+        else if (keyword == "Tf")
+            entry.filter = color(keyword, rest);
+        else if (keyword == "Ke")
+            entry.read.emits = color(keyword, rest).value_or(vec3(0)) != vec3(0);
+        else if (keyword == "d")
+            entry.dissolve = dissolve(rest);
+        else if (keyword == "Tr")
+            entry.transparency = float(number(keyword, rest));
+        else if (keyword == "Ni")
+            entry.ior = number(keyword, rest);
+        else if (keyword == "illum")
+            entry.illumination = int(std::clamp(number(keyword, rest), 0.0, 100.0));
+        else if (is_texture(keyword))
+            note_texture(keyword, rest, source_.line_number(), entry.read);
+        else if (!is_ignored(keyword))
+            leave_out(std::string(keyword), fmt::format("statements {}", ovc::quoted(keyword)));
+    }
+
+    /// "Kd 0.5" is a grey, as the format says. Returns nothing for "Kd spectral …" and "Kd xyz …".
+    std::optional<vec3> color(std::string_view keyword, std::string_view rest) {
+        std::string_view behind = rest;
+        if (const std::string_view word = next_word(behind); word == "spectral" || word == "xyz") {
+            leave_out(std::string(word), fmt::format("colors {}", ovc::quoted(word)));
+            return std::nullopt;
+        }
+        vec3 color(float(number(keyword, rest)));
+        if (!trimmed(rest).empty())
+            for (const int i : {1, 2})
+                color[i] = float(number(keyword, rest));
+        return glm::clamp(color, vec3(0), vec3(1));
+    }
+
+    /// "d -halo 0.5" asks for what d does, less in the middle.
+    float dissolve(std::string_view rest) {
+        std::string_view behind = rest;
+        if (next_word(behind) != "-halo")
+            return float(number("d", rest));
+        leave_out("-halo", "the option '-halo'");
+        return float(number("d", behind));
+    }
+
+    /// Takes a number off the text.
+    double number(std::string_view keyword, std::string_view& text) {
+        const std::string_view word = next_word(text);
+        const auto value = parse_double(word);
+        if (value && std::isfinite(*value))
+            return *value;
+        if (!error_)
+            error_ = source_.error_at_line(
+                fmt::format("found {}, expected a number of {}", found(word), keyword));
+        return 0;
+    }
+
+    /// Says it at the first call with this kind only.
+    void leave_out(const std::string& kind, std::string_view what) {
+        if (warned_.insert(kind).second)
+            say(log_, LogLevel::Warning,
+                source_.error_at_line(fmt::format("{} left out", what)).message);
+    }
+
+    Source& source_;
+    const LogSink& log_;
+    std::vector<Entry> entries_;
+    std::set<std::string> warned_;
+    std::optional<Error> error_;
+};
 
 } // namespace
 
-Result<std::vector<LibraryMaterial>> read_mtl(const std::filesystem::path& path, FilesRead* files) {
-    Result<Source> source = Source::open(path, files);
-    if (!source)
-        return source.error();
-    std::vector<Entry> entries;
-    while (const auto line = source->line()) {
-        std::string_view rest = without_comment(*line);
-        const std::string_view keyword = next_word(rest);
-        if (keyword == "newmtl") {
-            entries.push_back({{Material{std::string(trimmed(rest))}}});
-        } else if (!entries.empty()) {
-            read_line(keyword, rest, entries.back());
-            note_texture(keyword, rest, source->line_number(), entries.back().read);
-        }
-    }
-    if (source->is_damaged())
-        return source->error("");
+Result<std::vector<LibraryMaterial>> read_mtl(Source& source, const std::filesystem::path& path,
+                                              const LogSink& log) {
+    Result<std::vector<Entry>> entries = MtlReader(source, log).read();
+    if (!entries)
+        return entries.error();
     std::vector<LibraryMaterial> materials;
-    for (Entry& entry : entries) {
+    for (Entry& entry : *entries) {
         entry.finish();
         entry.read.library = path;
         materials.push_back(std::move(entry.read));

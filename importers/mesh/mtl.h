@@ -4,7 +4,8 @@
 
 #include "core/result.h"
 #include "core/scene.h"
-#include "importers/file/files_read.h"
+#include "core/system/log.h"
+#include "importers/file/source.h"
 #include "importers/mesh/mtl_textures.h"
 
 #include <filesystem>
@@ -26,9 +27,11 @@ struct LibraryMaterial {
 /// of Ks becomes the mirror if illum (3 to 8) asks for reflection. If illum asks for glass (4, 6,
 /// 7, 9), light that is not mirrored passes through: 1 - d of it, else Tr, or all if neither dims
 /// it; Tf becomes the filter, and Ni the index of refraction if illum is 6 or 7. Fresnel's
-/// equations (5, 7) are left out. The textures of mtl_textures.h are kept for the reader. Other
-/// statements, and values that are no numbers, are ignored.
-Result<std::vector<LibraryMaterial>> read_mtl(const std::filesystem::path& path,
-                                              FilesRead* files = nullptr);
+/// equations (5, 7) are left out. The textures of mtl_textures.h are kept for the reader.
+/// Statements that the format knows and that mean nothing here are ignored; others are said, once
+/// per kind. Error: a color or number that is none. path: of the source; log: receives the
+/// warnings.
+Result<std::vector<LibraryMaterial>> read_mtl(Source& source, const std::filesystem::path& path,
+                                              const LogSink& log);
 
 } // namespace ovc

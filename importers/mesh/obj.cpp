@@ -216,6 +216,7 @@ bool ObjReader::read_other(std::string_view keyword, std::string_view rest) {
         use_material(trimmed(rest));
     } else if (keyword == "mtllib") {
         read_libraries(trimmed(rest));
+        return error_.message.empty(); // else that of a library
     } else {
         for (const char c : keyword)
             if (c < ' ' || c > '~')
@@ -370,9 +371,14 @@ bool ObjReader::read_library(std::string_view name) {
     const std::filesystem::path path = path_.parent_path() / std::string(name);
     if (libraries_.contains(path.string()))
         return true;
-    auto materials = read_mtl(path, files_read_);
-    if (!materials)
+    Result<Source> source = Source::open(path, files_read_);
+    if (!source)
         return false;
+    auto materials = read_mtl(*source, path, log_);
+    if (!materials) {
+        error_ = materials.error();
+        return true;
+    }
     any_textures_ = any_textures_ || std::ranges::any_of(*materials, [](const LibraryMaterial& m) {
                         return !m.shown.empty();
                     });
