@@ -17,7 +17,7 @@ Result<std::unique_ptr<Backend>> make_backend(const Soup& soup, const BackendOpt
 Result<std::unique_ptr<Backend>> make_backend(const Soup& soup, const BackendOptions& options,
                                               const LogSink& log, DeviceOpening& opening) {
     if (options.kind == BackendKind::CpuKdTree)
-        return make_cpu_backend(soup);
+        return make_cpu_backend(soup, log);
     if (options.kind == BackendKind::Embree)
         return make_embree_backend(soup, EmbreeMode::Robust);
     ovc_result code = OVC_OK;
@@ -32,7 +32,7 @@ Result<std::unique_ptr<Backend>> make_backend(const Soup& soup, const BackendOpt
         return Error{device.error().message + " (--backend cpu-kdtree works without EGL)"};
     say(log, LogLevel::Warning,
         fmt::format("tracing on the CPU KD-tree instead of a GPU: {}", device.error().message));
-    return make_cpu_backend(soup);
+    return make_cpu_backend(soup, log);
 }
 
 Result<ovc_plan> make_plan(const Soup& soup, const BackendOptions& options, const LogSink& log) {

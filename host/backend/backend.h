@@ -147,7 +147,8 @@ Result<std::unique_ptr<Backend>> make_plugin_backend(PluginDevice device, const 
 Result<ovc_plan> make_plugin_plan(const PluginDevice& device, const Soup& soup,
                                   const BackendOptions& options, const LogSink& log);
 
-std::unique_ptr<Backend> make_cpu_backend(const Soup& soup);
+/// A warning in the log tells of triangles that it leaves out.
+std::unique_ptr<Backend> make_cpu_backend(const Soup& soup, const LogSink& log = {});
 /// Makes the backend over a tree of this soup, which outlives it. build_seconds goes into the
 /// statistics.
 std::unique_ptr<Backend> make_cpu_backend(const Soup& soup, const KdTree& tree,

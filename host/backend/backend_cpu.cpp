@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The CPU KD-tree as a backend: the baseline, and the reference that certified hits must equal.
 #include "core/system/stopwatch.h"
+#include "core/text/dropped.h"
 #include "host/backend/backend.h"
 #include "kdtree/build.h"
 #include "kdtree/traverse.h"
@@ -41,10 +42,12 @@ public:
     ovc_statistics statistics() const override { return statistics_; }
     std::string renderer() const override { return "CPU KD-tree in double precision"; }
 
+protected:
+    ovc_statistics statistics_{};
+
 private:
     const Soup& soup_;
     const KdTree& tree_;
-    ovc_statistics statistics_{};
 };
 
 /// Has the tree as well. It is a base that comes first, so that it is there before the backend.
@@ -53,8 +56,11 @@ struct OwnedTree {
 };
 class CpuBackendWithTree final : OwnedTree, public CpuBackend {
 public:
-    CpuBackendWithTree(const Soup& soup, KdTree built, double build_seconds)
-        : OwnedTree{std::move(built)}, CpuBackend(soup, tree, build_seconds) {}
+    CpuBackendWithTree(const Soup& soup, KdTree built, double build_seconds, const Dropped& dropped)
+        : OwnedTree{std::move(built)}, CpuBackend(soup, tree, build_seconds) {
+        statistics_.dropped_not_finite = dropped.not_finite;
+        statistics_.dropped_degenerate = dropped.degenerate;
+    }
 };
 
 std::unique_ptr<Backend> make_cpu_backend(const Soup& soup, const KdTree& tree,
@@ -62,10 +68,14 @@ std::unique_ptr<Backend> make_cpu_backend(const Soup& soup, const KdTree& tree,
     return std::make_unique<CpuBackend>(soup, tree, build_seconds);
 }
 
-std::unique_ptr<Backend> make_cpu_backend(const Soup& soup) {
+std::unique_ptr<Backend> make_cpu_backend(const Soup& soup, const LogSink& log) {
     const Stopwatch watch;
-    KdTree tree = build_kd_tree(soup);
-    return std::make_unique<CpuBackendWithTree>(soup, std::move(tree), watch.seconds());
+    Dropped dropped;
+    Box bounds;
+    const std::vector<TriangleId> triangles = hittable_triangles(soup, &dropped, &bounds);
+    KdTree tree = build_kd_tree(soup, triangles, bounds, {});
+    warn_of_dropped(dropped, log);
+    return std::make_unique<CpuBackendWithTree>(soup, std::move(tree), watch.seconds(), dropped);
 }
 
 } // namespace ovc

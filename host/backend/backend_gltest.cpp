@@ -7,6 +7,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <random>
 
@@ -36,6 +37,24 @@ static std::vector<Ray> random_rays(uint32_t seed, size_t count) {
         ray.dir = {place(random), place(random), place(random)};
     }
     return rays;
+}
+
+TEST(CpuBackend, SaysWhatItLeavesOut) {
+    Soup soup = random_soup(3, 10);
+    std::vector<vec3> corners(6, vec3(1));
+    corners[4].y = std::nanf("");
+    soup.chunks.push_back(Chunk::owning(dvec3(0), corners));
+    BackendOptions options;
+    options.kind = BackendKind::CpuKdTree;
+    std::vector<std::string> warnings;
+    const auto cpu = make_backend(soup, options, [&](LogLevel, const std::string& sentence) {
+        warnings.push_back(sentence);
+    });
+    ASSERT_TRUE(cpu);
+    EXPECT_THAT(warnings, testing::ElementsAre("left out 1 triangles with a NaN or infinite corner",
+                                               "left out 1 triangles without area"));
+    EXPECT_EQ((*cpu)->statistics().dropped_not_finite, 1u);
+    EXPECT_EQ((*cpu)->statistics().dropped_degenerate, 1u);
 }
 
 TEST(TwoLevelBackend, AnswersWhatTheCpuAnswers) {

@@ -2,6 +2,7 @@
 // Restores or builds a scene, and cuts it as small as can be where the budget has no room for it.
 #include "plugin/build/build_scene.h"
 
+#include "core/text/dropped.h"
 #include "core/text/format_text.h"
 #include "plugin/build/level2.h"
 #include "plugin/build/saved_levels.h"
@@ -96,15 +97,6 @@ std::optional<BuiltScene> restored(const Soup& soup, const TwoLevelOptions& opti
             return std::nullopt;
     }
     return std::move(*found);
-}
-
-void warn_of_dropped(const Dropped& dropped, const LogSink& log) {
-    if (dropped.not_finite)
-        say(log, LogLevel::Warning,
-            format_text("left out {} triangles with a NaN or infinite corner", dropped.not_finite));
-    if (dropped.degenerate)
-        say(log, LogLevel::Warning,
-            format_text("left out {} triangles without area", dropped.degenerate));
 }
 
 Result<BuiltScene> built(const Soup& soup, const TwoLevelOptions& options, const MemoryPlan& plan,
