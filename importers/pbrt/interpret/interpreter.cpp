@@ -19,7 +19,7 @@ const Interpreter::Directive Interpreter::kDirectives[] = {
     {"Accelerator", &Interpreter::setting},
     {"ActiveTransform", &Interpreter::active_transform},
     {"AreaLightSource", &Interpreter::area_light_source},
-    {"Attribute", &Interpreter::setting},
+    {"Attribute", &Interpreter::attribute},
     {"AttributeBegin", &Interpreter::attribute_begin},
     {"AttributeEnd", &Interpreter::attribute_end},
     {"Camera", &Interpreter::camera},

@@ -64,6 +64,7 @@ private:
     bool coord_sys_transform();
 
     // Scopes and files.
+    bool attribute();
     bool attribute_begin();
     bool attribute_end();
     bool transform_begin();

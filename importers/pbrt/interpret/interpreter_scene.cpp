@@ -3,6 +3,7 @@
 #include "importers/pbrt/interpret/interpreter.h"
 
 #include "importers/file/text.h"
+#include "importers/pbrt/interpret/left_over.h"
 #include "importers/pbrt/interpret/motion.h"
 #include "importers/pbrt/look/exposure.h"
 
@@ -34,7 +35,10 @@ bool Interpreter::shape() {
     std::optional<Mesh> mesh = make_shape(request);
     if (diagnostics_.failed())
         return false;
-    return !mesh || !sight || add_shape(std::move(*mesh), *sight);
+    if (!mesh || !sight)
+        return true;
+    tell_left_over(parameters, "shapes", type, diagnostics_);
+    return add_shape(std::move(*mesh), *sight);
 }
 
 std::optional<Sight> Interpreter::sight_of(const Parameters& parameters) {
@@ -106,6 +110,7 @@ bool Interpreter::material() {
     if (!read_typed(type, parameters))
         return false;
     state_.now.material = materials_.make(type, parameters, place_);
+    tell_left_over(parameters, "materials", type, diagnostics_);
     return true;
 }
 
@@ -115,6 +120,7 @@ bool Interpreter::make_named_material() {
     if (!read_typed(name, parameters))
         return false;
     materials_.define(name, parameters, place_);
+    tell_left_over(parameters, "materials", parameters.text("type"), diagnostics_);
     return true;
 }
 
@@ -145,7 +151,8 @@ bool Interpreter::light_source() {
     Parameters parameters;
     if (!read_typed(type, parameters))
         return false;
-    lights_.add(type, parameters, now_at(state_.now.transforms), place_);
+    if (lights_.add(type, parameters, now_at(state_.now.transforms), place_))
+        tell_left_over(parameters, "lights", type, diagnostics_);
     return true;
 }
 
@@ -156,9 +163,10 @@ bool Interpreter::area_light_source() {
         return false;
     if (type == "none")
         state_.now.emission.reset();
-    else if (type == "diffuse" || type == "area")
+    else if (type == "diffuse" || type == "area") {
         state_.now.emission = lights_.emission(parameters);
-    else
+        tell_left_over(parameters, "area lights", type, diagnostics_);
+    } else
         diagnostics_.missing("area light " + type, place_,
                              fmt::format("area lights {} left out", ovc::quoted(type)));
     return true;
@@ -178,7 +186,7 @@ bool Interpreter::camera() {
                                   ? glm::inverse(now_at(to_world))
                                   : now_at(state_.now.transforms);
     camera_ = std::move(request);
-    return true;
+    return check_camera(*camera_, diagnostics_);
 }
 
 bool Interpreter::film() {
@@ -186,7 +194,8 @@ bool Interpreter::film() {
     Parameters parameters;
     if (!read_typed(type, parameters))
         return false;
-    film_ = read_film(parameters);
+    film_ = read_film(parameters, diagnostics_);
+    tell_left_over(parameters, "films", type, diagnostics_);
     return true;
 }
 
@@ -211,6 +220,12 @@ bool Interpreter::setting() {
 
 bool Interpreter::bare_setting() {
     return pass_over();
+}
+
+/// v4's defaults for the parameters of later directives.
+bool Interpreter::attribute() {
+    diagnostics_.approximate("Attribute", place_, "defaults of parameters by Attribute left out");
+    return setting();
 }
 
 void Interpreter::fill(Scene& scene) {

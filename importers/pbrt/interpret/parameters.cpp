@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace ovc::pbrt {
 
@@ -65,6 +66,12 @@ bool Parameters::read(Tokens& tokens, Diagnostics& diagnostics) {
                                 fmt::format("parameters of type {} left out", ovc::quoted(type)));
         if (!read_values(tokens, diagnostics, parameter))
             return false;
+        if (known && (known->kind == Kind::Rgb || known->kind == Kind::Xyz) &&
+            parameter.numbers.size() % 3 != 0 && parameter.numbers.size() != 1)
+            return diagnostics.fail(parameter.place,
+                                    fmt::format("found {} of {}, expected 3",
+                                                counted(parameter.numbers.size(), "value"),
+                                                ovc::quoted(parameter.name)));
         if (known)
             list_.push_back(std::move(parameter));
         if (diagnostics.failed())
@@ -84,6 +91,11 @@ bool Parameters::read_values(Tokens& tokens, Diagnostics& diagnostics, Parameter
         const bool is_word = token.kind == TokenKind::Word;
         const bool is_truth = is_word && (token.text == "true" || token.text == "false");
         if (token.kind == TokenKind::Number) {
+            if (parameter.kind == Kind::Integer && token.number != std::floor(token.number))
+                return diagnostics.fail(token.place,
+                                        fmt::format("found {} among the values of {}, expected "
+                                                    "integers",
+                                                    token.number, ovc::quoted(parameter.name)));
             parameter.numbers.push_back(token.number);
         } else if (token.kind == TokenKind::Text || is_truth) {
             if (parameter.kind == Kind::Bool)
@@ -121,30 +133,42 @@ bool Parameters::read_values(Tokens& tokens, Diagnostics& diagnostics, Parameter
 
 const Parameter* Parameters::find(std::string_view name) const {
     for (auto p = list_.rbegin(); p != list_.rend(); ++p)
-        if (p->name == name)
+        if (p->name == name) {
+            p->asked = true;
             return &*p;
+        }
     return nullptr;
 }
 
 const Parameter* Parameters::find(std::string_view name, std::initializer_list<Kind> kinds) const {
     for (auto p = list_.rbegin(); p != list_.rend(); ++p)
-        if (p->name == name && std::find(kinds.begin(), kinds.end(), p->kind) != kinds.end())
+        if (p->name == name && std::find(kinds.begin(), kinds.end(), p->kind) != kinds.end()) {
+            p->asked = true;
             return &*p;
+        }
     return nullptr;
 }
 
+const Parameter* Parameters::find_one(std::string_view name,
+                                      std::initializer_list<Kind> kinds) const {
+    const Parameter* const p = find(name, kinds);
+    if (p)
+        p->wants = 1;
+    return p;
+}
+
 double Parameters::number(std::string_view name, double otherwise) const {
-    const Parameter* p = find(name, {Kind::Float, Kind::Integer});
+    const Parameter* p = find_one(name, {Kind::Float, Kind::Integer});
     return p && !p->numbers.empty() ? p->numbers[0] : otherwise;
 }
 
 bool Parameters::flag(std::string_view name, bool otherwise) const {
-    const Parameter* p = find(name, {Kind::Bool});
+    const Parameter* p = find_one(name, {Kind::Bool});
     return p && !p->numbers.empty() ? p->numbers[0] != 0 : otherwise;
 }
 
 std::string Parameters::text(std::string_view name, std::string_view otherwise) const {
-    const Parameter* p = find(name, {Kind::String});
+    const Parameter* p = find_one(name, {Kind::String});
     return std::string(p && !p->strings.empty() ? std::string_view(p->strings[0]) : otherwise);
 }
 
@@ -163,8 +187,11 @@ std::vector<double> Parameters::take(std::string_view name, std::initializer_lis
 }
 
 dvec3 Parameters::point(std::string_view name, const dvec3& otherwise) const {
-    const std::span<const double> p = numbers(name, {Kind::Point3, Kind::Vector3, Kind::Normal});
-    return p.size() >= 3 ? dvec3(p[0], p[1], p[2]) : otherwise;
+    const Parameter* const p = find(name, {Kind::Point3, Kind::Vector3, Kind::Normal});
+    if (!p)
+        return otherwise;
+    p->wants = 3;
+    return p->numbers.size() >= 3 ? dvec3(p->numbers[0], p->numbers[1], p->numbers[2]) : otherwise;
 }
 
 } // namespace ovc::pbrt

@@ -38,6 +38,8 @@ struct Parameter {
     std::vector<double> numbers; // a Bool is 0 or 1
     std::vector<std::string> strings;
     Place place;
+    mutable bool asked = false; // for its value; left_over.h names the others
+    mutable size_t wants = 0;   // values; 0: any number
 
     bool is_color() const {
         return kind == Kind::Rgb || kind == Kind::Xyz || kind == Kind::Blackbody ||
@@ -45,6 +47,7 @@ struct Parameter {
     }
 };
 
+/// Notes what it is asked for.
 class Parameters {
 public:
     /// Reads up to the next directive, and leaves out parameters of unknown types with a warning.
@@ -72,6 +75,8 @@ public:
     const std::vector<Parameter>& all() const { return list_; }
 
 private:
+    /// The same as find(), of a parameter that has one value.
+    const Parameter* find_one(std::string_view name, std::initializer_list<Kind> kinds) const;
     bool read_values(Tokens& tokens, Diagnostics& diagnostics, Parameter& parameter);
 
     std::vector<Parameter> list_;

@@ -3,6 +3,7 @@
 #include "importers/pbrt/look/camera.h"
 
 #include "importers/file/text.h"
+#include "importers/pbrt/interpret/left_over.h"
 
 #include <fmt/format.h>
 
@@ -13,14 +14,26 @@
 
 namespace ovc::pbrt {
 
-Film read_film(const Parameters& parameters) {
+namespace {
+
+uint32_t side_of(const Parameters& parameters, std::string_view name, uint32_t otherwise,
+                 Diagnostics& diagnostics) {
+    constexpr double kMax = 65535;
+    const double value = parameters.number(name, otherwise);
+    if (value >= 1 && value <= kMax)
+        return uint32_t(value);
+    diagnostics.fail(parameters.find(name)->place,
+                     fmt::format("found {} {}, expected 1 to {}", name, value, kMax));
+    return otherwise;
+}
+
+} // namespace
+
+Film read_film(const Parameters& parameters, Diagnostics& diagnostics) {
     Film film;
-    const auto side = [&](std::string_view name, uint32_t otherwise) {
-        const double value = parameters.number(name, otherwise);
-        return value >= 1 && value <= 65535 ? uint32_t(value) : otherwise;
-    };
     film.has_size = parameters.find("xresolution") && parameters.find("yresolution");
-    film.size = {side("xresolution", 640), side("yresolution", 480)};
+    film.size = {side_of(parameters, "xresolution", 640, diagnostics),
+                 side_of(parameters, "yresolution", 480, diagnostics)};
     // v3 scales what it writes; v4 exposes for some time at some sensitivity.
     const double scale = parameters.number("scale", 1);
     const double exposed =
@@ -48,10 +61,13 @@ Screen screen_of(const Parameters& p, const Film& film) {
     return screen;
 }
 
+bool is_orthographic(const CameraRequest& request) {
+    return request.type == "orthographic";
+}
+
 double angle_of_view(const CameraRequest& request) {
     const Parameters& p = request.parameters;
-    const double angle = p.find("halffov") ? 2 * p.number("halffov", 45) : p.number("fov", 90);
-    return angle > 0 && angle < 180 ? angle : 90;
+    return p.find("halffov") ? 2 * p.number("halffov", 45) : p.number("fov", 90);
 }
 
 /// Returns nothing for a camera in which everything is sharp. A ray's direction is 1 long along the
@@ -73,10 +89,19 @@ bool is_usable(const Camera& camera) {
 
 } // namespace
 
+bool check_camera(const CameraRequest& request, Diagnostics& diagnostics) {
+    const double angle = angle_of_view(request);
+    if (is_orthographic(request) || (angle > 0 && angle < 180))
+        return true;
+    return diagnostics.fail(
+        request.place,
+        fmt::format("found an angle of view of {}, expected more than 0 and less than 180", angle));
+}
+
 std::optional<Camera> make_camera(const CameraRequest& request, const Film& film,
                                   Diagnostics& diagnostics) {
     assert(film.size.width > 0 && film.size.height > 0);
-    const bool orthographic = request.type == "orthographic";
+    const bool orthographic = is_orthographic(request);
     if (!orthographic && request.type != "perspective")
         diagnostics.approximate(
             "camera", request.place,
@@ -99,6 +124,8 @@ std::optional<Camera> make_camera(const CameraRequest& request, const Film& film
     camera.up = camera.window->up;
     camera.fov_degrees = angle;
     camera.lens = lens_of(request.parameters, to_world);
+    if (orthographic || request.type == "perspective")
+        tell_left_over(request.parameters, "cameras", request.type, diagnostics);
     if (is_usable(camera))
         return camera;
     diagnostics.missing("view", request.place, "the camera left out: its transform makes no view");

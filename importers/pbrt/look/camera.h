@@ -15,7 +15,8 @@ struct Film {
     float exposure = 1;    // the factor on all light
 };
 
-Film read_film(const Parameters& parameters);
+/// Fails on a size that is none.
+Film read_film(const Parameters& parameters, Diagnostics& diagnostics);
 
 /// The arguments of the Camera directive, kept until the film is known.
 struct CameraRequest {
@@ -24,6 +25,9 @@ struct CameraRequest {
     dmat4 world_to_camera;
     Place place;
 };
+
+/// Fails on an angle of view that makes no picture; returns false then.
+bool check_camera(const CameraRequest& request, Diagnostics& diagnostics);
 
 /// Returns the camera; warns and returns nothing if the file's transform makes no view.
 std::optional<Camera> make_camera(const CameraRequest& request, const Film& film,

@@ -4,6 +4,7 @@
 #include "core/texture/noise/perlin.h"
 #include "importers/file/picture_path.h"
 #include "importers/file/text.h"
+#include "importers/pbrt/interpret/left_over.h"
 #include "importers/pbrt/look/textures.h"
 
 #include <fmt/format.h>
@@ -333,6 +334,10 @@ bool Textures::is_on_uv(uint32_t texture) const {
 }
 
 void Textures::take(Scene& scene) {
+    for (const Definition& definition : definitions_)
+        if (definition.made)
+            tell_left_over(definition.request.parameters, "textures", definition.request.type,
+                           diagnostics_);
     scene.textures = std::move(scene_.textures);
     scene.pictures = std::move(scene_.pictures);
 }

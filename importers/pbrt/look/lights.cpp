@@ -43,23 +43,27 @@ vec3 Lights::scaled(const Parameters& p, std::string_view color, const vec3& oth
     return textures_.color(p, color, otherwise) * textures_.color(p, "scale", vec3(1));
 }
 
-void Lights::add(const std::string& type, const Parameters& parameters, const dmat4& to_world,
+bool Lights::add(const std::string& type, const Parameters& parameters, const dmat4& to_world,
                  const Place& place) {
     any_ = true;
     if (type == "point")
-        return add_point(parameters, to_world);
-    if (type == "spot")
-        return add_spot(parameters, to_world);
-    if (type == "distant")
-        return add_distant(parameters, to_world);
-    if (type == "infinite" || type == "exinfinite")
-        return add_infinite(parameters, to_world, place);
-    if (type == "goniometric")
-        return add_goniometric(parameters, to_world, place);
-    if (type == "projection")
-        return add_projection(parameters, to_world, place);
-    diagnostics_.missing("light " + type, place,
-                         fmt::format("lights {} left out", ovc::quoted(type)));
+        add_point(parameters, to_world);
+    else if (type == "spot")
+        add_spot(parameters, to_world);
+    else if (type == "distant")
+        add_distant(parameters, to_world);
+    else if (type == "infinite" || type == "exinfinite")
+        add_infinite(parameters, to_world, place);
+    else if (type == "goniometric")
+        add_goniometric(parameters, to_world, place);
+    else if (type == "projection")
+        add_projection(parameters, to_world, place);
+    else {
+        diagnostics_.missing("light " + type, place,
+                             fmt::format("lights {} left out", ovc::quoted(type)));
+        return false;
+    }
+    return true;
 }
 
 void Lights::add_point(const Parameters& p, const dmat4& to_world) {

@@ -19,7 +19,8 @@ public:
     Lights(Textures& textures, Diagnostics& diagnostics)
         : textures_(textures), diagnostics_(diagnostics) {}
 
-    void add(const std::string& type, const Parameters& parameters, const dmat4& to_world,
+    /// Returns false, after a warning, for a type that is not known.
+    bool add(const std::string& type, const Parameters& parameters, const dmat4& to_world,
              const Place& place);
     std::optional<Emission> emission(const Parameters& parameters) const;
     /// Adds an emitting shape, which its transform places in the world.

@@ -173,6 +173,8 @@ Material make_glass(const MaterialContext& c, bool is_thin) {
     m.finish->diffuse = 0;
     m.finish->conserve_energy = true;
     const double ior = stated_ior(c).value_or(1.5);
+    if (roughness_of(c, 0) > 0)
+        c.diagnostics.approximate("rough glass", c.place, "rough glass is shown smooth");
     m.optics = Optics{.boundary = is_thin ? Optics::Boundary::Thin : Optics::Boundary::Dielectric,
                       .reflection = c.color("Kr", 1),
                       .through = m.filter,
@@ -203,8 +205,8 @@ vec3 metal_of(const MaterialContext& c) {
     // v4 gives the metal below a coat names of its own.
     const bool coated = c.p.find("conductor.eta") || c.p.find("conductor.k");
     const std::string eta = coated ? "conductor.eta" : "eta", k = coated ? "conductor.k" : "k";
-    for (const std::string& name : {eta, k})
-        if (const Parameter* p = c.p.find(name); p && !p->strings.empty())
+    for (const Parameter* const p : {c.p.find(eta), c.p.find(k)})
+        if (p && !p->strings.empty())
             if (const auto color = metal_color(p->strings[0]))
                 return *color;
     if (!c.p.find(eta) && !c.p.find(k))

@@ -5,6 +5,7 @@
 
 #include "importers/file/picture_path.h"
 #include "importers/file/text.h"
+#include "importers/pbrt/interpret/left_over.h"
 
 #include <fmt/format.h>
 
@@ -33,11 +34,13 @@ void Textures::define(const std::string& name, TextureRequest request) {
     Definition definition;
     definition.mean = mean(request.type, request.parameters);
     definition.is_pattern = !is_plain(request.type);
-    for (const Parameter& p : request.parameters.all()) {
-        definition.is_pattern = definition.is_pattern || is_pattern(request.parameters, p.name);
-        if (const Definition* const part = find(request.parameters, p.name))
+    for (const Parameter& p : request.parameters.all())
+        if (const Definition* const part = find(p)) {
+            definition.is_pattern = definition.is_pattern || part->is_pattern;
             definition.parts[p.name] = size_t(part - definitions_.data());
-    }
+        }
+    if (is_plain(request.type))
+        tell_left_over(request.parameters, "textures", request.type, diagnostics_);
     definition.request = std::move(request);
     by_name_[name] = definitions_.size();
     definitions_.push_back(std::move(definition));
@@ -53,10 +56,15 @@ void Textures::tell_mean(const std::string& type, const Place& place) const {
 const Textures::Definition* Textures::find(const Parameters& parameters,
                                            std::string_view name) const {
     const Parameter* p = parameters.find(name);
+    return p ? find(*p) : nullptr;
+}
+
+const Textures::Definition* Textures::find(const Parameter& parameter) const {
     // v1 may give a texture's name for a float or a colour.
-    if (!p || (p->kind != Kind::Texture && p->kind != Kind::String) || p->strings.empty())
+    if ((parameter.kind != Kind::Texture && parameter.kind != Kind::String) ||
+        parameter.strings.empty())
         return nullptr;
-    const auto at = by_name_.find(p->strings[0]);
+    const auto at = by_name_.find(parameter.strings[0]);
     return at == by_name_.end() ? nullptr : &definitions_[at->second];
 }
 
@@ -95,6 +103,8 @@ vec3 Textures::color(const Parameters& parameters, std::string_view name,
     const Parameter* p = parameters.find(name);
     if (!p)
         return otherwise;
+    if (!p->is_color())
+        p->wants = 1;
     if (p->kind == Kind::Texture || p->kind == Kind::String) {
         if (const Definition* const found = find(parameters, name))
             return found->mean;

@@ -68,6 +68,7 @@ private:
     };
 
     const Definition* find(const Parameters& parameters, std::string_view name) const;
+    const Definition* find(const Parameter& parameter) const;
     vec3 mean(const std::string& type, const Parameters& parameters) const;
     std::optional<uint32_t> make(size_t definition);
     std::optional<uint32_t> make_image(const TextureRequest& request);
