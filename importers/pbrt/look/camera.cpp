@@ -27,6 +27,32 @@ uint32_t side_of(const Parameters& parameters, std::string_view name, uint32_t o
     return otherwise;
 }
 
+/// Takes the part of the picture that is rendered: pbrt's cropwindow in shares of it, or v4's
+/// pixelbounds; x from and to, then y.
+void take_part(const Parameters& parameters, Film& film, Diagnostics& diagnostics) {
+    const dvec2 size(film.size.width, film.size.height);
+    film.first = dvec2(0);
+    film.last = size;
+    for (const std::string_view name : {"cropwindow", "pixelbounds"}) {
+        const Parameter* const part = parameters.find(name, {Kind::Float, Kind::Integer});
+        if (!part)
+            continue;
+        part->wants = 4;
+        if (part->numbers.size() != 4)
+            return; // tell_left_over() fails
+        const std::vector<double>& n = part->numbers;
+        const dvec2 scale = name == "cropwindow" ? size : dvec2(1);
+        const dvec2 a = scale * dvec2(n[0], n[2]), b = scale * dvec2(n[1], n[3]);
+        film.first = glm::max(glm::ceil(glm::min(a, b)), dvec2(0));
+        film.last = glm::min(glm::ceil(glm::max(a, b)), size);
+        if (!(film.first.x < film.last.x && film.first.y < film.last.y)) {
+            diagnostics.fail(part->place, fmt::format("found {} without a pixel in it", name));
+            return;
+        }
+        film.has_size = true;
+    }
+}
+
 } // namespace
 
 Film read_film(const Parameters& parameters, Diagnostics& diagnostics) {
@@ -34,6 +60,7 @@ Film read_film(const Parameters& parameters, Diagnostics& diagnostics) {
     film.has_size = parameters.find("xresolution") && parameters.find("yresolution");
     film.size = {side_of(parameters, "xresolution", 640, diagnostics),
                  side_of(parameters, "yresolution", 480, diagnostics)};
+    take_part(parameters, film, diagnostics);
     // v3 scales what it writes; v4 exposes for some time at some sensitivity.
     const double scale = parameters.number("scale", 1);
     const double exposed =
@@ -59,6 +86,14 @@ Screen screen_of(const Parameters& p, const Film& film) {
         window.size() == 4)
         screen = {window[0], window[1], window[2], window[3]};
     return screen;
+}
+
+/// Returns the part of the screen that is rendered; rows go down.
+Screen rendered(const Screen& all, const Film& film) {
+    const double across = (all.right - all.left) / double(film.size.width);
+    const double down = (all.bottom - all.top) / double(film.size.height);
+    return {all.left + across * film.first.x, all.left + across * film.last.x,
+            all.top + down * film.last.y, all.top + down * film.first.y};
 }
 
 bool is_orthographic(const CameraRequest& request) {
@@ -107,7 +142,7 @@ std::optional<Camera> make_camera(const CameraRequest& request, const Film& film
             "camera", request.place,
             fmt::format("a camera {} becomes a perspective one", ovc::quoted(request.type)));
     const double angle = angle_of_view(request);
-    const Screen screen = screen_of(request.parameters, film);
+    const Screen screen = rendered(screen_of(request.parameters, film), film);
     const double tangent = orthographic ? 1 : std::tan(angle * (std::numbers::pi / 360));
 
     const dmat4 to_world = glm::inverse(request.world_to_camera);

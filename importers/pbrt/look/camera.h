@@ -11,11 +11,14 @@ namespace ovc::pbrt {
 /// The arguments of the Film directive.
 struct Film {
     ImageSize size{640, 480};
-    bool has_size = false; // whether the file gave it
-    float exposure = 1;    // the factor on all light
+    bool has_size = false;          // whether the file gave it
+    dvec2 first{0}, last{640, 480}; // the corners, in pixels, of the part that is rendered
+    float exposure = 1;             // the factor on all light
+
+    ImageSize rendered() const { return {uint32_t(last.x - first.x), uint32_t(last.y - first.y)}; }
 };
 
-/// Fails on a size that is none.
+/// Fails on a size, or a part of the picture, that is none.
 Film read_film(const Parameters& parameters, Diagnostics& diagnostics);
 
 /// The arguments of the Camera directive, kept until the film is known.
