@@ -10,8 +10,21 @@
 
 namespace ovc {
 
-void print_message(std::string_view sentence) {
-    fmt::print(stderr, "overcast: {}\n", printable(sentence));
+/// Returns where the first line of the message ends.
+static size_t line_end(std::string_view message) {
+    constexpr std::string_view kBreak = "\n    ";
+    return std::min(message.find(kBreak), message.size());
+}
+
+void print_message(std::string_view message) {
+    std::string text = "overcast: " + printable(message.substr(0, line_end(message)));
+    message.remove_prefix(line_end(message));
+    while (!message.empty()) {
+        message.remove_prefix(1);
+        text += "\n" + printable(message.substr(0, line_end(message)));
+        message.remove_prefix(line_end(message));
+    }
+    fmt::print(stderr, "{}\n", text);
 }
 
 void print_lines(std::string_view lines) {

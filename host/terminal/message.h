@@ -6,9 +6,11 @@
 
 namespace ovc {
 
-/// Prints "overcast: sentence" to standard error, in a line of its own. Control characters, as in
-/// names of files, are made printable.
-void print_message(std::string_view sentence);
+/// Prints "overcast: message" to standard error, in lines of its own. A message is a sentence and
+/// any number of lines that begin with four blanks, such as those of a scene. Control characters,
+/// as in names of files, are made printable, and so is every other line break: no file's name can
+/// look like a message of its own.
+void print_message(std::string_view message);
 
 /// Prints lines of text to standard output, each of them made printable.
 void print_lines(std::string_view lines);
