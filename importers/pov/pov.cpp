@@ -53,12 +53,13 @@ Radiosity parse_radiosity(Reader& reader) {
             radiosity.bounces = uint32_t(parse_int(reader, 1, 20, "recursion_limit"));
         else if (reader.take("brightness"))
             radiosity.brightness = std::max(0.0f, float(parse_float(reader)));
-        else if (const Token token = reader.next();
-                 token.kind == TokenKind::Name && token.name->is_keyword)
-            skip_arguments(reader);
-        else if (!token.is(','))
-            reader.fail(token.place,
-                        fmt::format("found {}, expected a part of radiosity", found(token)));
+        else if (!take_skipped(reader, {"adc_bailout", "always_sample", "count", "error_bound",
+                                        "gray_threshold", "load_file", "low_error_factor",
+                                        "max_sample", "maximum_reuse", "media", "minimum_reuse",
+                                        "nearest_count", "normal", "pretrace_end", "pretrace_start",
+                                        "save_file", "subsurface"}) &&
+                 !reader.take(','))
+            reader.fail_here("a part of radiosity");
     }
     return radiosity;
 }
@@ -212,19 +213,14 @@ private:
                 look_.ambient_light = parse_color(reader_).rgb;
             else if (reader_.take("irid_wavelength"))
                 look_.irid_wavelengths = glm::max(parse_color(reader_).rgb, vec3(1e-6f));
-            else if (const Token token = reader_.next();
-                     token.kind == TokenKind::Name && token.name->is_keyword) {
-                if (token.is("radiosity")) {
-                    scene.radiosity = parse_radiosity(reader_);
-                    continue;
-                }
-                if (token.is("photons") || token.is("hf_gray_16") || token.is("subsurface"))
-                    reader_.omit(token.name->text, token.place, token.name->text + " is left out");
-                skip_arguments(reader_);
-            } else
-                reader_.fail(token.place, fmt::format("found {}, expected a part of "
-                                                      "global_settings",
-                                                      found(token)));
+            else if (reader_.take("radiosity"))
+                scene.radiosity = parse_radiosity(reader_);
+            else if (const Token token = reader_.peek();
+                     take_skipped(reader_, {"hf_gray_16", "photons", "subsurface"}))
+                reader_.omit(token.name->text, token.place, token.name->text + " is left out");
+            else if (!take_skipped(reader_,
+                                   {"adc_bailout", "charset", "max_intersections", "mm_per_unit"}))
+                reader_.fail_here("a part of global_settings");
         }
     }
 

@@ -678,6 +678,30 @@ TEST(PovErrors, NamesOfNothingAreNotPassedOver) {
     }
 }
 
+/// povray 3.7.0.10 refuses each of them.
+TEST(PovErrors, WordsThatABlockDoesNotHaveAreNotPassedOver) {
+    for (const char* scene :
+         {"camera { fov 60 }", "camera { location 1 radius 2 }", "global_settings { fov 60 }",
+          "global_settings { look_at 1 }", "radiosity { sphere 1 }", "sphere { 0, 1 look_at 0 }",
+          "sphere { 0, 1 pigment { rgb 1 location 2 } }", "sphere { 0, 1 texture { angle 2 } }",
+          "sphere { 0, 1 normal { bumps look_at 2 } }", "sphere { 0, 1 finish { look_at 0.1 } }",
+          "sphere { 0, 1 interior { diffuse 1 } }", "fog { distance 1 diffuse 2 }",
+          "light_source { 1, 1 location 2 }", "media { diffuse 1 }",
+          "sphere { 0, 1 pigment { image_map { png \"none.png\" sharp } } }",
+          "sphere_sweep { linear_spline 2, 0, 1, x, 1 look_at 0 }"}) {
+        const Result<Scene> read = parse(scene);
+        ASSERT_FALSE(read) << scene;
+        EXPECT_NE(read.error().message.find(": found '"), std::string::npos)
+            << read.error().message;
+    }
+    EXPECT_TRUE(
+        parse("camera { locatoin 1 }")
+            .error()
+            .message.starts_with(
+                "x.pov:1:10: found 'locatoin', expected '}' or a part of a camera; did you mean "
+                "'location'?\n"));
+}
+
 TEST(PovScene, LightMayComeFromBehind) {
     const auto finish = [](const std::string& object) {
         return *parse("#version 3.7; " + object)->materials.at(0).finish;

@@ -98,7 +98,6 @@ CameraValue parse_camera(Reader& reader) {
     if (const auto other = take_named_if<CameraValue>(reader))
         camera = *other;
     while (!reader.take('}')) {
-        const Token token = reader.peek();
         if (reader.take("location"))
             camera.location = parse_vector(reader);
         else if (reader.take("direction"))
@@ -129,10 +128,7 @@ CameraValue parse_camera(Reader& reader) {
             parse_mesh_camera(reader, camera);
         else if (const auto m = take_transform(reader))
             placed = *m * placed;
-        else if (token.kind == TokenKind::Name) {
-            reader.next();
-            skip_arguments(reader);
-        } else if (!reader.take(','))
+        else if (!take_skipped(reader, {"confidence", "variance"}) && !reader.take(','))
             reader.fail_here("'}' or a part of a camera");
     }
     if (target)

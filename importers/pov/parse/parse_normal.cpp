@@ -113,10 +113,7 @@ Normal parse_normal_parts(Reader& reader, const Normal& base, char end) {
             }
         } else if (starts_number(reader, token))
             normal.amount = parse_float(reader);
-        else if (token.kind == TokenKind::Name && token.name->is_keyword) {
-            reader.next();
-            skip_arguments(reader);
-        } else if (!reader.take(','))
+        else if (!reader.take(','))
             reader.fail_here("a part of a normal");
     }
     pattern.finish();

@@ -274,7 +274,6 @@ ObjectPtr parse_object(Reader& reader) {
 
 void parse_modifiers(Reader& reader, Object& object) {
     while (!reader.take('}')) {
-        const Token token = reader.peek();
         if (parse_look(reader, object) || parse_switch(reader, object))
             continue;
         if (const auto m = take_transform(reader))
@@ -290,12 +289,10 @@ void parse_modifiers(Reader& reader, Object& object) {
             object.inside_texture = parse_texture(reader);
         else if (const auto texture = take_named_if<Texture>(reader))
             add_texture(object, *texture); // old scenes name it without texture { }
-        else if (token.kind == TokenKind::Name && token.name->is_keyword && !starts_object(token)) {
-            reader.next(); // photons and the like
-            if (token.is("cutaway_textures"))
-                object.notes.push_back(left_out(reader, "an object", token));
-            skip_arguments(reader);
-        } else if (!reader.take(',') && !reader.take(';'))
+        else if (starts_color(reader.peek()))
+            parse_color(reader); // of old scenes, which povray ignores too
+        else if (!take_left_out(reader, {"cutaway_textures"}, "an object", object.notes) &&
+                 !take_skipped(reader, {"photons"}) && !reader.take(',') && !reader.take(';'))
             reader.fail_here(fmt::format("'}}' or a modifier of {}", object.kind));
     }
 }

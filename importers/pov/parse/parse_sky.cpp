@@ -63,12 +63,7 @@ Fog parse_fog(Reader& reader) {
             fog.up = dvec3(*m * dvec4(fog.up, 0));
         else if (starts_color(token) || starts_number(reader, token))
             fog.color = parse_color(reader);
-        else if (token.kind == TokenKind::Name && token.name->is_keyword) {
-            reader.next();
-            reader.omit("fog " + token.name->text, token.place,
-                        token.name->text + " of a fog is left out");
-            skip_arguments(reader);
-        } else if (!reader.take(','))
+        else if (!reader.take(','))
             reader.fail_here("'}' or a part of fog");
     }
     if (!on_ground)

@@ -18,11 +18,6 @@ namespace ovc::pov {
 
 namespace {
 
-/// Returns whether the token is a word of the language, not an identifier.
-bool is_word(const Token& token) {
-    return token.kind == TokenKind::Name && token.name->is_keyword;
-}
-
 /// Reads the amount of diffuse, phong or specular, and whether it is given as an albedo.
 float parse_share(Reader& reader, bool& is_albedo) {
     is_albedo = reader.take("albedo");
@@ -138,6 +133,24 @@ void skip_arguments(Reader& reader) {
     }
 }
 
+bool take_skipped(Reader& reader, std::initializer_list<std::string_view> words) {
+    for (const std::string_view word : words)
+        if (reader.take(word)) {
+            skip_arguments(reader);
+            return true;
+        }
+    return false;
+}
+
+bool take_left_out(Reader& reader, std::initializer_list<std::string_view> words,
+                   std::string_view of, Notes& notes) {
+    const Token word = reader.peek();
+    if (!take_skipped(reader, words))
+        return false;
+    notes.push_back(left_out(reader, of, word));
+    return true;
+}
+
 Pigment parse_pigment_parts(Reader& reader, Pigment pigment, char end) {
     const Deeper deeper(reader);
     PatternParts pattern(reader, pigment, MapOf::Pigments);
@@ -169,12 +182,9 @@ Pigment parse_pigment_parts(Reader& reader, Pigment pigment, char end) {
             reader.next();
             parse_color(reader);
         } else if (pattern.take()) {
-        } else if (is_word(token)) {
-            reader.next();
-            skip_arguments(reader);
         } else if (starts_number(reader, token)) {
             plain(parse_color(reader));
-        } else if (!reader.take(','))
+        } else if (!take_skipped(reader, {"no_bump_scale"}) && !reader.take(','))
             reader.fail_here("a part of a pigment");
     }
     pattern.finish();
@@ -195,14 +205,10 @@ Surface parse_finish(Reader& reader, const Surface& base) {
     while (!reader.take('}')) {
         if (const auto named_surface = take_named_if<Surface>(reader))
             surface = *named_surface;
-        else if (!parse_finish_part(reader, surface)) {
-            const Token token = reader.next(); // subsurface and the like
-            if (!is_word(token))
-                reader.fail(token.place,
-                            fmt::format("found {}, expected a part of a finish", found(token)));
-            surface.notes.push_back(left_out(reader, "a finish", token));
-            skip_arguments(reader);
-        }
+        else if (!parse_finish_part(reader, surface) &&
+                 !take_left_out(reader, {"caustics", "reflection_exponent", "subsurface"},
+                                "a finish", surface.notes))
+            reader.fail_here("a part of a finish");
     }
     return surface;
 }
@@ -226,14 +232,9 @@ Interior parse_interior(Reader& reader, const Interior& base) {
             interior.absorption.color = parse_color(reader).rgb;
         else if (reader.take("media"))
             interior.media.push_back(parse_media(reader));
-        else {
-            const Token token = reader.next();
-            if (!is_word(token))
-                reader.fail(token.place,
-                            fmt::format("found {}, expected a part of an interior", found(token)));
-            interior.notes.push_back(left_out(reader, "an interior", token));
-            skip_arguments(reader);
-        }
+        else if (!take_left_out(reader, {"dispersion", "dispersion_samples", "refraction"},
+                                "an interior", interior.notes))
+            reader.fail_here("a part of an interior");
     }
     return interior;
 }
@@ -399,10 +400,7 @@ Texture parse_texture_parts(Reader& reader, Texture texture, char end) {
         else if (reader.take("normal"))
             texture.normal = parse_normal(reader, texture.normal);
         else if (mix.take()) {
-        } else if (is_word(token)) {
-            reader.next();
-            skip_arguments(reader);
-        } else if (!reader.take(','))
+        } else if (!take_skipped(reader, {"no_bump_scale"}) && !reader.take(','))
             reader.fail_here("a part of a texture");
     }
     take_mix(reader, mix, texture);

@@ -34,8 +34,14 @@ void place(Interior& interior, const dmat4& by);
 
 /// Returns the note "WORD of a finish is left out", where `of` is "a finish".
 const Note* left_out(Reader& reader, std::string_view of, const Token& word);
+/// Takes one of the words, which Overcast leaves out, with its arguments, and adds that note.
+bool take_left_out(Reader& reader, std::initializer_list<std::string_view> words,
+                   std::string_view of, Notes& notes);
 
 /// Skips the arguments of a word that Overcast does not use: numbers, texts, and at most one block.
 void skip_arguments(Reader& reader);
+/// Takes one of the words, which change nothing here, with its arguments. Returns false where
+/// another word is next.
+bool take_skipped(Reader& reader, std::initializer_list<std::string_view> words);
 
 } // namespace ovc::pov

@@ -84,7 +84,7 @@ struct MapWords {
 };
 
 /// Reads the words up to the end of the block, or up to the textures of a material_map.
-MapWords parse_map_words(Reader& reader, const Place& start, bool of_materials = false) {
+MapWords parse_map_words(Reader& reader, bool of_materials = false) {
     MapWords words;
     const auto is_texture = [&] {
         const Token token = reader.peek();
@@ -107,8 +107,11 @@ MapWords parse_map_words(Reader& reader, const Place& start, bool of_materials =
             words.use_index = true;
         else if (reader.take("use_color") || reader.take("use_colour"))
             words.use_index = false;
-        else if (reader.next().kind == TokenKind::End)
-            reader.fail(start, "found no '}' to the block of a picture");
+        else if (const Token word = reader.peek(); reader.take("premultiplied")) {
+            if (parse_flag(reader))
+                reader.omit("premultiplied", word.place, "premultiplied of a picture is left out");
+        } else if (!reader.take(','))
+            reader.fail_here("'}' or a word of a picture");
     }
     return words;
 }
@@ -223,7 +226,7 @@ ValueMap values_of_materials(Reader& reader, const Token& word, const NamedPictu
 
 ValueMap parse_value_map(Reader& reader, const Token& word) {
     const NamedPicture named = take_picture(reader, word.name->text);
-    const MapWords words = parse_map_words(reader, named.start);
+    const MapWords words = parse_map_words(reader);
     ValueMap map{.bump_size = words.bump_size};
     const bool flat_only = word.is("bump_map");
     if (!named.picture)
@@ -244,7 +247,7 @@ ValueMap parse_value_map(Reader& reader, const Token& word) {
 
 MaterialValues parse_material_picture(Reader& reader, const Token& word) {
     const auto named = std::make_shared<const NamedPicture>(take_picture(reader, word.name->text));
-    const MapWords words = parse_map_words(reader, named->start, /* of_materials= */ true);
+    const MapWords words = parse_map_words(reader, /* of_materials= */ true);
     return [named, words, word](Reader& again, size_t count) {
         return values_of_materials(again, word, *named, words, count);
     };
@@ -260,7 +263,7 @@ void parse_image_map(Reader& reader, const Token& word, Pigment& pigment) {
     pigment.placed = dmat4(1);
     const NamedPicture named = take_picture(reader, "image_map");
     const Place& start = named.start;
-    const MapWords words = parse_map_words(reader, start);
+    const MapWords words = parse_map_words(reader);
     if (!named.picture) {
         note("image_map " + named.name, start,
              fmt::format("{}: the image_map is drawn by a middle grey",

@@ -2,6 +2,8 @@
 // Source: POV-Ray 3.7 reference, section 3.3.1.1.2, "Identifiers and Keywords".
 #include "importers/pov/words/keywords.h"
 
+#include "core/text/suggestion.h"
+
 #include <algorithm>
 #include <iterator>
 
@@ -142,6 +144,7 @@ static constexpr std::string_view kKeywords[] = {"aa_level",
                                                  "exp",
                                                  "expand_thresholds",
                                                  "exponent",
+                                                 "exr",
                                                  "exterior",
                                                  "extinction",
                                                  "face_indices",
@@ -186,6 +189,7 @@ static constexpr std::string_view kKeywords[] = {"aa_level",
                                                  "gray_threshold",
                                                  "green",
                                                  "gts",
+                                                 "hdr",
                                                  "height_field",
                                                  "hexagon",
                                                  "hf_gray_16",
@@ -501,6 +505,11 @@ static constexpr std::string_view kKeywords[] = {"aa_level",
                                                  "yes",
                                                  "z"};
 static_assert(std::is_sorted(std::begin(kKeywords), std::end(kKeywords)));
+
+std::string did_you_mean_keyword(std::string_view word) {
+    constexpr size_t kMin = 4; // nearly all shorter words are near some keyword
+    return word.size() < kMin ? "" : did_you_mean(word, kKeywords);
+}
 
 bool is_keyword(std::string_view word) {
     return std::binary_search(std::begin(kKeywords), std::end(kKeywords), word);

@@ -6,6 +6,7 @@
 #include "importers/file/available_memory.h"
 #include "importers/pov/shapes/font.h"
 #include "importers/pov/trace.h"
+#include "importers/pov/words/keywords.h"
 
 #include <fmt/format.h>
 
@@ -281,7 +282,10 @@ Caller Reader::caller() const {
 
 void Reader::fail_here(const std::string& expected) {
     const Token token = next();
-    fail(token.place, fmt::format("found {}, expected {}", found(token), expected));
+    const bool is_unknown =
+        token.kind == TokenKind::Name && !token.name->is_keyword && !find(token.name);
+    fail(token.place, fmt::format("found {}, expected {}{}", found(token), expected,
+                                  is_unknown ? did_you_mean_keyword(token.name->text) : ""));
 }
 
 const Note* Reader::note(const std::string& kind, const Place& at, const std::string& sentence) {
