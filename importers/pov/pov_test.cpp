@@ -203,6 +203,16 @@ TEST(PovExpression, SplinesAreThoseOfPovRay) {
         EXPECT_VALUE(dvec3(0, 3, 0), behind, spline("cubic_spline"));
     EXPECT_VALUE(dvec3(0.5, 1, 0), "S(0.9)",
                  "#declare S = spline { cubic_spline 0, <0, 0, 0>, 1, <1, 2, 0> }");
+    // Clocks that lie apart unevenly, and the same points by splines of other kinds.
+    const std::string uneven =
+        "#declare S = spline { cubic_spline -1, 0, 0, 0, 1, 1, 3, 0.5, 4, 2, 7, 1 }";
+    EXPECT_VALUE(0.515625, "S(0.5)", uneven);
+    EXPECT_VALUE(0.879125, "S(3.3)", uneven);
+    EXPECT_VALUE(0.95, "S(3.3, linear_spline)", uneven);
+    EXPECT_VALUE(0.8275, "S(3.3, quadratic_spline)", uneven);
+    EXPECT_VALUE(-0.125, "S(-0.5, quadratic_spline)", uneven);
+    EXPECT_LT(std::abs(value("S(2, natural_spline)", uneven).x - 0.66894019), 1e-8);
+    EXPECT_FALSE(parse(uneven + " box { 0, S(2, linear) }"));
 }
 
 TEST(PovDirectives, MacrosTakeValuesAndVariables) {

@@ -104,13 +104,14 @@ std::vector<double> parse_arguments(Reader& reader, const Token& name) {
     return arguments;
 }
 
-double parse_clock(Reader& reader, const Token& name) {
+/// Reads `(CLOCK)` or `(CLOCK, KIND)` behind the name of a spline.
+std::pair<double, Spline::Kind> parse_clock(Reader& reader, const Token& name, Spline::Kind kind) {
     reader.expect('(', name.name->text);
     const double clock = parse_float(reader);
     if (reader.take(','))
-        reader.next(); // the kind of spline, which we ignore
+        kind = take_spline_kind(reader, kind);
     reader.expect(')', "the clock of a spline");
-    return clock;
+    return {clock, kind};
 }
 
 /// Returns the value, which is still there and of this kind. `name` is what the scene calls it.
@@ -136,9 +137,9 @@ Number parse_variable(Reader& reader, const Token& name) {
         const std::vector<double> arguments = parse_arguments(reader, name);
         return call(reader, name, unchanged<Function>(reader, handle, name), arguments);
     }
-    if (value && std::holds_alternative<Spline>(*value)) {
-        const double clock = parse_clock(reader, name);
-        return at(unchanged<Spline>(reader, handle, name), clock);
+    if (const auto* spline = value ? std::get_if<Spline>(value) : nullptr) {
+        const auto [clock, kind] = parse_clock(reader, name, spline->kind);
+        return at(unchanged<Spline>(reader, handle, name), kind, clock);
     }
     if (value && !std::holds_alternative<Number>(*value))
         reader.fail(name.place, fmt::format("found {} {}, expected a number", kind_of(*value),

@@ -59,7 +59,7 @@ void add_cubic(ProgramBuilder& program, double first, double width,
 /// Returns a program of the spline's component at a clock: a cubic for each piece.
 ProgramPtr spline_program(const Spline& spline, size_t component) {
     ProgramBuilder program;
-    const auto value = [&](double clock) { return at(spline, clock).v[component]; };
+    const auto value = [&](double clock) { return at(spline, spline.kind, clock).v[component]; };
     // select(clock - last, select(… select(clock - first, before, piece) …, piece), piece)
     for (auto point = spline.points.rbegin(); point != spline.points.rend(); ++point) {
         program.add(StepKind::Argument);
@@ -426,7 +426,7 @@ Number call(Reader& reader, const Token& name, const Function& function,
     if (function.formula)
         return Number::of(function.formula(arguments));
     if (function.spline)
-        return at(*function.spline, arguments.empty() ? 0 : arguments[0]);
+        return at(*function.spline, function.spline->kind, arguments.empty() ? 0 : arguments[0]);
     const auto argument = [&](size_t i) { return i < arguments.size() ? arguments[i] : 0; };
     if (function.color) {
         const Color c = function.color({argument(0), argument(1), argument(2)});
