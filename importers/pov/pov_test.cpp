@@ -712,6 +712,15 @@ TEST(PovErrors, WordsThatABlockDoesNotHaveAreNotPassedOver) {
                 "'location'?\n"));
 }
 
+TEST(PovErrors, FlatCamerasSeeLessThanHalfOfEverything) {
+    EXPECT_EQ(parse("camera { angle 200 }").error().message,
+              "x.pov:1:16: found a camera's angle of 200, expected one above 0 and below 180\n"
+              "    camera { angle 200 }\n                   ^");
+    EXPECT_FALSE(parse("camera { orthographic angle 180 }"));
+    EXPECT_TRUE(parse("camera { fisheye angle 360 }"));
+    EXPECT_FALSE(parse("camera { fisheye angle 361 }"));
+}
+
 TEST(PovScene, LightMayComeFromBehind) {
     const auto finish = [](const std::string& object) {
         return *parse("#version 3.7; " + object)->materials.at(0).finish;

@@ -34,9 +34,11 @@ void look_at(Reader& reader, CameraValue& camera, const dvec3& target) {
     camera.right = right * (handedness >= 0 ? -right_length : right_length);
 }
 
-void set_angle(Reader& reader, CameraValue& camera, double degrees) {
-    if (!(degrees > 0 && degrees <= 360))
-        reader.fail(reader.place(), fmt::format("found a camera's angle of {}", degrees));
+void set_angle(Reader& reader, CameraValue& camera, double degrees, const Place& at) {
+    const bool is_flat = camera.bend == ImageWindow::Bend::Flat && !camera.faces;
+    if (!(degrees > 0 && (is_flat ? degrees < 180 : degrees <= 360)))
+        reader.fail(at, fmt::format("found a camera's angle of {}, expected one above 0 and {}",
+                                    degrees, is_flat ? "below 180" : "up to 360"));
     camera.angle = degrees;
     if (degrees < 180 && glm::length(camera.direction) > 0)
         camera.direction =
@@ -93,6 +95,7 @@ CameraValue parse_camera(Reader& reader) {
     CameraValue camera;
     std::optional<dvec3> target;
     std::optional<double> angle;
+    Place angle_at;
     dmat4 placed(1);
     reader.expect('{', "camera");
     if (const auto other = take_named_if<CameraValue>(reader))
@@ -110,6 +113,7 @@ CameraValue parse_camera(Reader& reader) {
         else if (reader.take("look_at"))
             target = parse_vector(reader);
         else if (reader.take("angle")) {
+            angle_at = reader.peek().place;
             angle = parse_float(reader);
             reader.take_comma();
             if (starts_number(reader, reader.peek()))
@@ -136,7 +140,7 @@ CameraValue parse_camera(Reader& reader) {
     else if (!camera.distance)
         camera.distance = glm::length(dvec3(0, 0, 1) - camera.location);
     if (angle)
-        set_angle(reader, camera, *angle);
+        set_angle(reader, camera, *angle, angle_at);
     apply(camera, placed);
     return camera;
 }
