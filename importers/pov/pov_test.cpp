@@ -57,6 +57,29 @@ TEST(PovLights, ShineInTheirGroup) {
                 << scene->meshes[m].name << " " << l;
 }
 
+/// As measured of povray 3.7.0.10.
+TEST(PovLights, AreOfTheKindNamedLast) {
+    const auto light = [](const std::string& words) {
+        const Result<Scene> scene = parse("light_source { 1, 1 " + words + " }");
+        return scene && scene->lights.size() == 1 ? scene->lights[0] : Light{};
+    };
+    EXPECT_TRUE(light("spotlight shadowless").shadowless);
+    EXPECT_FALSE(light("spotlight shadowless").cone);
+    EXPECT_FALSE(light("shadowless").lights_media);
+    EXPECT_FALSE(light("shadowless spotlight").shadowless);
+    EXPECT_TRUE(light("shadowless spotlight").lights_media);
+    EXPECT_TRUE(light("shadowless spotlight").cone);
+    EXPECT_TRUE(light("spotlight cylinder").beam);
+    EXPECT_FALSE(light("spotlight cylinder").cone);
+    EXPECT_TRUE(light("cylinder shadowless").parallel);
+    const Light narrow = light("spotlight radius 20 falloff 10");
+    ASSERT_TRUE(narrow.cone);
+    EXPECT_EQ(narrow.cone->falloff_cosine, narrow.cone->radius_cosine);
+    const Light even = light("cylinder radius 0 falloff 2");
+    ASSERT_TRUE(even.beam);
+    EXPECT_EQ(even.beam->radius, 2);
+}
+
 TEST(PovExpression, FollowsTheOrderOfOperations) {
     EXPECT_VALUE(7, "1 + 2 * 3");
     EXPECT_VALUE(-3, "-(1 + 2)");

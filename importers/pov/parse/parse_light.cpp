@@ -20,18 +20,20 @@ double cosine_of_degrees(double degrees) {
 
 /// Parts of a light that take effect once all of them are read.
 struct Words {
+    /// Of the words of kinds the last one counts, as in povray.
+    enum class Kind { Point, Spot, Cylinder, Shadowless };
+    Kind kind = Kind::Point;
     dvec3 point_at{0, 0, 1};
     std::optional<double> radius, falloff; // degrees of a spot, a cylinder's distances
     double tightness = 0;
-    bool spot = false, cylinder = false;
     ObjectPtr looks_like;
 };
 
 bool parse_light_part(Reader& reader, Words& words, Light& light) {
     if (reader.take("spotlight"))
-        words.spot = true;
+        words.kind = Words::Kind::Spot;
     else if (reader.take("cylinder"))
-        words.cylinder = true;
+        words.kind = Words::Kind::Cylinder, light.parallel = true;
     else if (reader.take("parallel"))
         light.parallel = true;
     else if (reader.take("point_at"))
@@ -47,7 +49,7 @@ bool parse_light_part(Reader& reader, Words& words, Light& light) {
     else if (reader.take("fade_power"))
         light.fade_power = parse_float(reader);
     else if (reader.take("shadowless"))
-        light.shadowless = true;
+        words.kind = Words::Kind::Shadowless;
     else
         return false;
     return true;
@@ -108,6 +110,31 @@ bool parse_other_part(Reader& reader, Words& words, LightSource& source) {
     return true;
 }
 
+/// Gives the light its cone, its beam or neither. As measured of povray 3.7.0.10, there is no light
+/// beyond a radius that is larger than the falloff, a cylinder without a radius is even, and media
+/// do not scatter light without shadows.
+void apply_kind(const Words& words, Light& light) {
+    switch (words.kind) {
+    case Words::Kind::Point:
+        break;
+    case Words::Kind::Spot: {
+        const double radius = cosine_of_degrees(words.radius.value_or(30));
+        const double falloff = cosine_of_degrees(words.falloff.value_or(45));
+        light.cone = SpotCone{radius, std::min(radius, falloff), words.tightness};
+        break;
+    }
+    case Words::Kind::Cylinder: {
+        const double radius = words.radius.value_or(0.75);
+        const double falloff = std::max(words.falloff.value_or(1), 1e-9);
+        light.beam = LightBeam{radius > 0 ? radius : falloff, falloff, words.tightness};
+        break;
+    }
+    case Words::Kind::Shadowless:
+        light.shadowless = true;
+        light.lights_media = false;
+    }
+}
+
 } // namespace
 
 void parse_light_source(Reader& reader, Object& object) {
@@ -130,15 +157,8 @@ void parse_light_source(Reader& reader, Object& object) {
     const dvec3 way = words.point_at - light.position;
     if (glm::length(way) > 0)
         light.direction = glm::normalize(way);
-    if (words.cylinder) {
-        light.parallel = true;
-        light.beam = LightBeam{words.radius.value_or(0.75),
-                               std::max(words.falloff.value_or(1), 1e-9), words.tightness};
-    }
+    apply_kind(words, light);
     light.clearance = 1e-3; // as povray 3.7 draws planes before a light
-    if (words.spot)
-        light.cone = SpotCone{cosine_of_degrees(words.radius.value_or(30)),
-                              cosine_of_degrees(words.falloff.value_or(45)), words.tightness};
     if (words.looks_like) {
         auto lamp = std::make_shared<Object>(*words.looks_like);
         place(*lamp, translation(light.position));
