@@ -156,8 +156,11 @@ void Gatherer::inherit(const Object& object, Inherited& from) {
     from.placed = from.placed * object.placed;
     from.in_solid = from.in_solid * object.placed;
     from.seen_by &= object.seen_by;
-    if (object.kind == "light_group")
-        from.lit_by = {light_groups_++, !object.global_lights};
+    if (object.kind == "light_group") { // the outermost one's global_lights counts
+        const bool is_outermost = from.lit_by.group == kNone;
+        from.lit_by = {light_groups_++,
+                       is_outermost ? !object.global_lights : from.lit_by.group_alone};
+    }
     from.uv_mapping = from.uv_mapping || object.uv_mapping;
     from.inverse = from.inverse != object.inverse;
     // A short scene with groups of groups can place more objects than memory holds.

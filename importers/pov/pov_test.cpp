@@ -39,17 +39,18 @@ dvec3 value(const std::string& expression, const std::string& before = "") {
             << found_value.x << " " << found_value.y << " " << found_value.z;                      \
     } while (false)
 
-/// As povray 3.7.0.10 draws them: the innermost group counts.
+/// As povray 3.7.0.10 draws them: the lights of the innermost group count, and the global_lights of
+/// the outermost.
 TEST(PovLights, ShineInTheirGroup) {
     const Result<Scene> scene = parse_pov(
         "light_source { <0, 9, 0> rgb 1 } sphere { 0, 1 pigment { rgb 1 } } "
         "light_group { light_source { <9, 9, 0> rgb 1 } sphere { 1, 1 pigment { rgb x } } "
-        "light_group { light_source { <0, 9, 9> rgb 1 } box { 3, 4 pigment { rgb y } } } "
-        "global_lights on }",
+        "light_group { light_source { <0, 9, 9> rgb 1 } box { 3, 4 pigment { rgb y } } "
+        "global_lights off } global_lights on }",
         "x.pov", {});
     ASSERT_TRUE(scene) << scene.error().message;
     const std::vector<std::vector<bool>> lit = {
-        {true, false, false}, {true, true, false}, {false, false, true}};
+        {true, false, false}, {true, true, false}, {true, false, true}};
     ASSERT_EQ(scene->meshes.size(), lit.size());
     for (size_t m = 0; m < lit.size(); ++m)
         for (size_t l = 0; l < scene->lights.size(); ++l)
