@@ -16,6 +16,9 @@ struct Shape {
     /// Adds the shape's triangles to `out`. A circle gets `segments` straight pieces, which is a
     /// multiple of 4 and at least 8. `open` leaves out the caps at the shape's ends.
     SharedFunction<void(int segments, bool open, Facets& out)> cut;
+    /// Adds the triangles that close an open shape where it is an operand of a solid: they bound
+    /// its inside, and are not drawn. Null: the shape is closed, or has no inside.
+    SharedFunction<void(int segments, Facets& out)> close;
     /// The coefficients of triangles(), which estimates how many triangles cut() adds.
     double fixed = 0;
     double per_square = 0; // x segments^2

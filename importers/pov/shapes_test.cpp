@@ -71,6 +71,24 @@ const Solid kSolids[] = {
      "intersection { plane { <1, 1, 1>, 1 } plane { <-1, -1, 1>, 1 } plane { <1, -1, -1>, 1 } "
      "plane { <-1, 1, -1>, 1 } }",
      8 * std::sqrt(3.0)},
+    {"a_height_field_in_a_box",
+     "intersection { height_field { function 3, 3 { 0.25 + 0.5*x } } box { 0.125, <0.75, 2, 0.5> } "
+     "}",
+     0.625 * 0.375 * (0.25 + 0.5 * 0.4375 - 0.125)},
+    {"a_height_field_above_its_water",
+     "difference { box { <0.625, -1, 0.125>, <0.75, 1, 0.5> } height_field { function 3, 3 { 0.25 "
+     "+ "
+     "0.5*x } water_level 0.5 } }",
+     0.125 * 0.375 * (1 - 0.25 - 0.5 * 0.6875)},
+    {"a_lathe_is_filled_to_its_axis",
+     "intersection { lathe { linear_spline 2, <1, -1>, <1, 1> } box { <-2, -0.5, -2>, <2, 0.5, 2> "
+     "} "
+     "}",
+     pi},
+    {"a_lathe_in_pieces",
+     "intersection { lathe { bezier_spline 8, <1, -1>, <1, -0.3>, <1, 0.3>, <1, 1>, <0.5, 1>, "
+     "<0.5, 0.3>, <0.5, -0.3>, <0.5, -1> } box { <-2, -0.5, -2>, <2, 0.5, 2> } }",
+     0.75 * pi},
     {"a_mesh_with_an_inside",
      "difference { box { -1, 1 } mesh { triangle { 0, <0, 3, 0>, <3, 0, 0> } "
      "triangle { 0, <3, 0, 0>, <0, 0, 3> } triangle { 0, <0, 0, 3>, <0, 3, 0> } "

@@ -47,9 +47,11 @@ std::vector<uint8_t> hidden_caps(const Shape& shape, int segments, const Facets&
     return hidden;
 }
 
-/// Adds facets, moved into the solid's space, to the leaf. Mirrored ones still face outside.
-void add(const Facets& facets, const dmat4& placed, uint32_t skin, CutLeaf& leaf) {
-    assert(facets.corners.size() % 3 == 0);
+/// Adds facets, moved into the solid's space, to the leaf, whose box is around those that are not
+/// hidden. Mirrored ones still face outside.
+void add(const Facets& facets, const std::vector<uint8_t>& hidden, const dmat4& placed,
+         uint32_t skin, CutLeaf& leaf) {
+    assert(facets.corners.size() == 3 * hidden.size());
     const dmat3 turned = glm::transpose(glm::inverse(dmat3(placed)));
     const bool mirrored = glm::determinant(dmat3(placed)) < 0;
     const size_t order[3] = {0, mirrored ? size_t(2) : 1, mirrored ? size_t(1) : 2};
@@ -61,7 +63,7 @@ void add(const Facets& facets, const dmat4& placed, uint32_t skin, CutLeaf& leaf
             const dvec3 n = turned * corner.normal;
             const double length = glm::length(n);
             normals[i] = length > 0 && std::isfinite(length) ? n / length : dvec3(0);
-            if (is_finite(at[i]))
+            if (is_finite(at[i]) && !hidden[t / 3])
                 leaf.box.add(at[i]);
         }
         leaf.operand.triangles.push_back(at);
@@ -127,6 +129,11 @@ CutLeaf cut_leaf(const SolidLeaf& leaf, const Fineness& fineness, const Box& rea
             shape->cut(segments, /* open= */ false, facets);
             if (skin.object->open)
                 hidden = hidden_caps(*shape, segments, facets);
+            else if (shape->close) {
+                hidden.resize(facets.corners.size() / 3, 0);
+                shape->close(segments, facets);
+                hidden.resize(facets.corners.size() / 3, 1);
+            }
         } else if (const auto* endless = std::get_if<EndlessShape>(&skin.object->shape)) {
             const size_t shown =
                 endless->cut(moved(reach, glm::inverse(leaf.placed)), fineness.cells, facets);
@@ -138,8 +145,8 @@ CutLeaf cut_leaf(const SolidLeaf& leaf, const Fineness& fineness, const Box& rea
             hidden.resize(shown, 0);
             hidden.resize(facets.corners.size() / 3, 1);
         }
-        add(facets, leaf.placed, uint32_t(&skin - leaf.skins.data()), cut);
         hidden.resize(facets.corners.size() / 3, 0);
+        add(facets, hidden, leaf.placed, uint32_t(&skin - leaf.skins.data()), cut);
         cut.operand.hidden.insert(cut.operand.hidden.end(), hidden.begin(), hidden.end());
     }
     assert(cut.operand.hidden.size() == cut.operand.triangles.size());

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <memory>
 
 namespace ovc::pov {
 
@@ -117,34 +118,82 @@ Grid parse_grid(Reader& reader) {
     return grid_of_picture(reader, potential);
 }
 
-/// Adds the part of the triangle at or above the level.
-void add_above(const std::array<Corner, 3>& triangle, double level, Facets& out) {
+enum class Side { Above, Below };
+
+/// Returns the place on the way from a to b at the level that lies between them. It is the same,
+/// bit for bit, on the way from b to a.
+Corner at_level(const Corner& a, const Corner& b, double level) {
+    if (a.position.y > b.position.y)
+        return at_level(b, a, level);
+    const double t = (level - a.position.y) / (b.position.y - a.position.y);
+    return {glm::mix(a.position, b.position, t), glm::mix(a.normal, b.normal, t)};
+}
+
+/// Adds the part of the triangle on this side of the level. What lies on it is above.
+void add_part(const std::array<Corner, 3>& triangle, double level, Side side, Facets& out) {
     std::vector<Corner> kept;
     for (size_t i = 0; i < 3; ++i) {
         const Corner &a = triangle[i], &b = triangle[(i + 1) % 3];
-        if (a.position.y >= level)
+        const bool is_above = a.position.y >= level;
+        if (is_above == (side == Side::Above))
             kept.push_back(a);
-        if ((a.position.y >= level) != (b.position.y >= level)) {
-            const double t = (level - a.position.y) / (b.position.y - a.position.y);
-            kept.push_back({glm::mix(a.position, b.position, t), glm::mix(a.normal, b.normal, t)});
-        }
+        if (is_above != (b.position.y >= level))
+            kept.push_back(at_level(a, b, level));
     }
     for (size_t i = 1; i + 1 < kept.size(); ++i)
         out.add(kept[0], kept[i], kept[i + 1]);
 }
 
 /// Adds two triangles for each cell, which is cut from (x + 1, z) to (x, z + 1) as in POV-Ray.
-void cut_grid(const Grid& grid, Facets& out) {
+void cut_grid(const Grid& grid, Side side, Facets& out) {
     assert(grid.width >= 2 && grid.height >= 2);
     assert(grid.heights.size() == grid.width * grid.height);
     const bool is_smooth = out.smooth || grid.smooth; // add() of corners sets out.smooth
     for (size_t j = 0; j + 1 < grid.height; ++j)
         for (size_t i = 0; i + 1 < grid.width; ++i) {
             const Corner right = grid.corner(i + 1, j), back = grid.corner(i, j + 1);
-            add_above({grid.corner(i, j), back, right}, grid.water_level, out);
-            add_above({grid.corner(i + 1, j + 1), right, back}, grid.water_level, out);
+            add_part({grid.corner(i, j), back, right}, grid.water_level, side, out);
+            add_part({grid.corner(i + 1, j + 1), right, back}, grid.water_level, side, out);
         }
     out.smooth = is_smooth;
+}
+
+/// Returns the corners along the rim, counterclockwise seen from above, with those where it crosses
+/// the water.
+std::vector<dvec3> rim_of(const Grid& grid) {
+    const size_t x = grid.width - 1, z = grid.height - 1;
+    std::vector<Corner> corners;
+    for (size_t j = 0; j < z; ++j)
+        corners.push_back(grid.corner(0, j));
+    for (size_t i = 0; i < x; ++i)
+        corners.push_back(grid.corner(i, z));
+    for (size_t j = z; j > 0; --j)
+        corners.push_back(grid.corner(x, j));
+    for (size_t i = x; i > 0; --i)
+        corners.push_back(grid.corner(i, 0));
+    std::vector<dvec3> rim;
+    for (size_t i = 0; i < corners.size(); ++i) {
+        const Corner &a = corners[i], &b = corners[(i + 1) % corners.size()];
+        rim.push_back(a.position);
+        if ((a.position.y >= grid.water_level) != (b.position.y >= grid.water_level))
+            rim.push_back(at_level(a, b, grid.water_level).position);
+    }
+    return rim;
+}
+
+/// Adds what bounds the inside: the surface under the water, walls and a floor. povray's inside is
+/// all that lies below the surface, however far.
+void close_grid(const Grid& grid, Facets& out) {
+    constexpr double kFloor = -1000; // as deep as nobody cuts
+    cut_grid(grid, Side::Below, out);
+    const std::vector<dvec3> rim = rim_of(grid);
+    const dvec3 middle(0.5, kFloor, 0.5);
+    for (size_t i = 0; i < rim.size(); ++i) {
+        const dvec3 &a = rim[i], &b = rim[(i + 1) % rim.size()];
+        const dvec3 under_a(a.x, kFloor, a.z), under_b(b.x, kFloor, b.z);
+        out.add_quad(b, a, under_a, under_b);
+        out.add(under_b, under_a, middle);
+    }
 }
 
 } // namespace
@@ -163,7 +212,9 @@ Shape parse_height_field(Reader& reader) {
     }
     Shape shape;
     shape.fixed = 2 * double(grid.width - 1) * double(grid.height - 1);
-    shape.cut = [grid = std::move(grid)](int, bool, Facets& out) { cut_grid(grid, out); };
+    const auto shared = std::make_shared<const Grid>(std::move(grid));
+    shape.cut = [shared](int, bool, Facets& out) { cut_grid(*shared, Side::Above, out); };
+    shape.close = [shared](int, Facets& out) { close_grid(*shared, out); };
     return shape;
 }
 

@@ -101,6 +101,52 @@ void revolve(const std::vector<ProfilePoint>& profile, int segments, const dvec2
         }
 }
 
+/// Adds the disc within a place of the profile, facing up or down the axis.
+void add_disc(const dvec2& at, int segments, bool up, Facets& out) {
+    const auto corner = [&](int step) {
+        const dvec2 c = on_circle(step, segments);
+        return out.circle_radius * at.x * dvec3(c.x, 0, -c.y) + dvec3(0, at.y, 0);
+    };
+    for (int step = 0; step < segments; ++step)
+        out.add(dvec3(0, at.y, 0), corner(up ? step : step + 1), corner(up ? step + 1 : step));
+}
+
+/// Returns the pieces of a lathe's profile, each in so many steps.
+std::vector<std::vector<ProfilePoint>> lathe_profiles(Curve curve, const std::vector<dvec2>& points,
+                                                      int steps) {
+    const size_t stride = curve == Curve::Bezier ? 4 : 1;
+    std::vector<std::vector<ProfilePoint>> profiles;
+    for (size_t piece = 0; piece + points_of_a_piece(curve) <= points.size(); piece += stride) {
+        std::vector<ProfilePoint>& profile = profiles.emplace_back();
+        for (int i = 0; i <= steps; ++i) {
+            ProfilePoint p;
+            p.at = curve_point(curve, &points[piece], double(i) / steps, &p.direction);
+            profile.push_back(p);
+        }
+    }
+    return profiles;
+}
+
+/// Adds a disc at each end of a lathe's profile that no other piece goes on from: povray fills the
+/// profile to the axis.
+void close_lathe(const std::vector<std::vector<ProfilePoint>>& profiles, int segments,
+                 Facets& out) {
+    std::vector<dvec2> begins;
+    for (const std::vector<ProfilePoint>& profile : profiles)
+        begins.push_back(profile.front().at);
+    for (const std::vector<ProfilePoint>& profile : profiles) {
+        const dvec2& end = profile.back().at;
+        const auto next = std::find_if(begins.begin(), begins.end(),
+                                       [&](const dvec2& begin) { return same(begin, end); });
+        if (next != begins.end())
+            begins.erase(next);
+        else
+            add_disc(end, segments, /* up= */ true, out);
+    }
+    for (const dvec2& begin : begins)
+        add_disc(begin, segments, /* up= */ false, out);
+}
+
 } // namespace
 
 Shape parse_prism(Reader& reader) {
@@ -144,20 +190,18 @@ Shape parse_lathe(Reader& reader) {
     shape.corners_have_uv = true;
     shape.per_segment = curve == Curve::Linear ? 2 * double(points.size()) : 0;
     shape.per_square = curve == Curve::Linear ? 0 : double(points.size()) / 4;
-    shape.cut = [=](int segments, bool, Facets& out) {
-        const size_t stride = curve == Curve::Bezier ? 4 : 1;
-        const int steps = steps_of(curve, segments);
-        const size_t pieces = (points.size() - points_of_a_piece(curve)) / stride + 1;
-        for (size_t piece = 0; piece + points_of_a_piece(curve) <= points.size(); piece += stride) {
-            std::vector<ProfilePoint> profile;
-            for (int i = 0; i <= steps; ++i) {
-                ProfilePoint p;
-                p.at = curve_point(curve, &points[piece], double(i) / steps, &p.direction);
-                profile.push_back(p);
-            }
-            const dvec2 ends = dvec2(piece / stride, piece / stride + 1) / double(pieces);
-            revolve(profile, segments, &ends, out);
+    const auto profiles = [=](int segments) {
+        return lathe_profiles(curve, points, steps_of(curve, segments));
+    };
+    shape.cut = [profiles](int segments, bool, Facets& out) {
+        const std::vector<std::vector<ProfilePoint>> pieces = profiles(segments);
+        for (size_t i = 0; i < pieces.size(); ++i) {
+            const dvec2 ends = dvec2(i, i + 1) / double(pieces.size());
+            revolve(pieces[i], segments, &ends, out);
         }
+    };
+    shape.close = [profiles](int segments, Facets& out) {
+        close_lathe(profiles(segments), segments, out);
     };
     return shape;
 }
