@@ -549,6 +549,7 @@ void PatternParts::finish() {
     if (pattern_.kind != Kind::Average && !is_discrete(pattern_.kind))
         std::stable_sort(made->stops.begin(), made->stops.end(),
                          [](const MapStop& a, const MapStop& b) { return a.at < b.at; });
+    count_parts(reader_, *made);
     pigment_.color = average_of(made->stops);
     pigment_.pattern = std::move(made);
 }

@@ -4,6 +4,8 @@
 #include "importers/pov/parse/texture.h"
 #include "importers/pov/words/block.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 namespace ovc::pov {
@@ -167,6 +169,27 @@ ColorMap parse_map(Reader& reader, MapOf of) {
         reader.expect(']', "an entry of a map");
     }
     return made;
+}
+
+static uint64_t parts_of(const Pigment& pigment) {
+    return pigment.pattern ? pigment.pattern->parts : 0;
+}
+
+static uint64_t parts_of(const Texture& texture) {
+    return parts_of(texture.pigment) + parts_of(texture.mix) + parts_of(texture.normal.pattern) +
+           (texture.under ? parts_of(*texture.under) : 0);
+}
+
+void count_parts(Reader& reader, PatternMap& map) {
+    constexpr uint64_t kMaxParts = 100'000; // far beyond what real scenes mix
+    map.parts = 1;
+    for (const MapStop& stop : map.stops)
+        map.parts += parts_of(stop.pigment) + (stop.texture ? parts_of(*stop.texture) : 0) +
+                     (stop.normal ? parts_of(stop.normal->pattern) : 0);
+    if (map.parts > kMaxParts)
+        reader.fail(reader.place(), fmt::format("found a mix of more than {} patterns, counting "
+                                                "those within each other",
+                                                kMaxParts));
 }
 
 Color average_of(const std::vector<MapStop>& stops) {

@@ -21,6 +21,10 @@ std::vector<MapStop> parse_entries(Reader& reader, MapOf of);
 /// or null.
 std::vector<MapStop> default_stops(const Token* word, Pattern::Kind kind);
 
+/// Sets how many parts the map has, once it has its stops. Throws ParseError beyond a limit: a
+/// texture that mixes one that mixes one with itself has twice as many at each step.
+void count_parts(Reader& reader, PatternMap& map);
+
 /// Returns the average of the stops over [0, 1], a middle grey where there are none.
 Color average_of(const std::vector<MapStop>& stops);
 

@@ -391,6 +391,25 @@ TEST(PovSky, HasPatterns) {
     EXPECT_EQ(scene.textures[scene.background.layers[1].texture].stops[0].color.transmit, 0.5f);
 }
 
+TEST(PovPattern, HasOnlySoManyParts) {
+    for (const char* mix : {"texture { average texture_map { [1 T][1 T] } }",
+                            "texture { checker texture { T } texture { T } }",
+                            "texture { tiles { texture { T } tile2 texture { T } } }",
+                            "texture { T normal { average normal_map { [1 N][1 N] } } }"}) {
+        const auto scene =
+            parse_pov("#declare N = normal { bumps } #declare T = texture { pigment { rgb 1 } } "
+                      "#for (I, 0, 40) #declare T = " +
+                          std::string(mix) +
+                          " #declare N = normal { average normal_map { [1 N][1 N] } } #end "
+                          "sphere { 0, 1 texture { T } }",
+                      "x.pov", {});
+        ASSERT_FALSE(scene) << mix;
+        EXPECT_NE(scene.error().message.find("found a mix of more than 100000 patterns"),
+                  std::string::npos)
+            << scene.error().message;
+    }
+}
+
 TEST(PovPattern, MixesTexturesOnly) {
     const Result<Scene> scene = parse_pov(
         "box { 0, 1 texture { gradient x color_map { [0 rgb 0] [1 rgb 1] } } }", "x.pov", {});

@@ -4,6 +4,7 @@
 #include "importers/file/text.h"
 #include "importers/pov/parse/parse_media.h"
 #include "importers/pov/parse/pattern.h"
+#include "importers/pov/parse/pattern_map.h"
 #include "importers/pov/pictures/image_map.h"
 #include "importers/pov/values/transform.h"
 #include "importers/pov/words/block.h"
@@ -310,6 +311,7 @@ static Texture parse_tiles(Reader& reader) {
     }
     if (map->stops.size() == 2)
         std::swap(map->stops[0].texture, map->stops[1].texture);
+    count_parts(reader, *map);
     return map->stops.empty() ? reader.defaults : mix_of(std::move(map));
 }
 
@@ -344,6 +346,7 @@ static Texture parse_material_map(Reader& reader, const Token& word) {
             stop.texture = textures[i];
             map->stops.push_back(std::move(stop));
         }
+    count_parts(reader, *map);
     return mix_of(std::move(map));
 }
 

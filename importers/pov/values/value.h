@@ -144,6 +144,9 @@ struct PatternMap {
     /// With stops, the pattern is the brightness of this picture. Without any, the picture takes
     /// the place of all these except the pattern's steps.
     std::optional<ImageMap> image_map;
+    /// How many patterns there are in this one, with those of its stops and of their stops. Each is
+    /// evaluated as often as it comes.
+    uint64_t parts = 1;
     /// The pattern is of what corners of a mesh have in the place of texture coordinates, whatever
     /// the texture's transformations.
     bool on_corners = false;
