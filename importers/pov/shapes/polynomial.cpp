@@ -2,19 +2,29 @@
 #include "importers/pov/shapes/polynomial.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <queue>
 
 namespace ovc::pov {
 
+void Polynomial::add(const Term& term) {
+    highest = std::max({highest, term.powers[0], term.powers[1], term.powers[2]});
+    assert(highest <= kMaxOrder);
+    terms.push_back(term);
+}
+
 double Polynomial::operator()(const dvec3& p) const {
+    std::array<dvec3, kMaxOrder + 1> powers; // of the coordinates
+    powers[0] = dvec3(1);
+    for (int k = 1; k <= highest; ++k)
+        powers[size_t(k)] = powers[size_t(k) - 1] * p;
     double sum = 0;
     for (const Term& term : terms) {
         double product = term.factor;
         for (int i = 0; i < 3; ++i)
-            for (int k = 0; k < term.powers[i]; ++k)
-                product *= p[i];
+            product *= powers[size_t(term.powers[i])][i];
         sum += product;
     }
     return sum;
@@ -44,11 +54,15 @@ Range power(double lo, double hi, int exponent) {
 } // namespace
 
 double Polynomial::least(const Box& box) const {
+    std::array<std::array<Range, 3>, kMaxOrder + 1> powers; // of the coordinates
+    for (int k = 0; k <= highest; ++k)
+        for (int i = 0; i < 3; ++i)
+            powers[size_t(k)][size_t(i)] = power(box.lo[i], box.hi[i], k);
     double sum = 0;
     for (const Term& term : terms) {
         Range product{term.factor, term.factor};
-        for (int i = 0; i < 3; ++i) {
-            const Range r = power(box.lo[i], box.hi[i], term.powers[i]);
+        for (size_t i = 0; i < 3; ++i) {
+            const Range& r = powers[size_t(term.powers[i])][i];
             const double all[4] = {product.lo * r.lo, product.lo * r.hi, product.hi * r.lo,
                                    product.hi * r.hi};
             product = {*std::min_element(all, all + 4), *std::max_element(all, all + 4)};
@@ -70,7 +84,7 @@ Polynomial polynomial_of(int order, const std::vector<double>& factors) {
         for (int y = order - x; y >= 0; --y)
             for (int z = order - x - y; z >= 0; --z)
                 if (const double factor = factors[next++]; factor != 0)
-                    polynomial.terms.push_back({factor, {x, y, z}});
+                    polynomial.add({factor, {x, y, z}});
     return polynomial;
 }
 

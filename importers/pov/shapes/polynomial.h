@@ -8,13 +8,18 @@
 
 namespace ovc::pov {
 
+/// POV-Ray's largest.
+inline constexpr int kMaxOrder = 35;
+
 struct Polynomial {
     struct Term {
         double factor;
-        int powers[3];
+        int powers[3]; // up to kMaxOrder
     };
     std::vector<Term> terms;
+    int highest = 0; // power of a coordinate
 
+    void add(const Term& term);
     double operator()(const dvec3& p) const;
     /// Returns a lower bound on the values in the box.
     double least(const Box& box) const;

@@ -419,7 +419,7 @@ void parse_quadric(Reader& reader, Object& object) {
                                {0, 1, 1}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 0}};
     for (int i = 0; i < 10; ++i)
         if (const double factor = i < 9 ? rows[i / 3][i % 3] : rest; factor != 0)
-            polynomial.terms.push_back({factor, {powers[i][0], powers[i][1], powers[i][2]}});
+            polynomial.add({factor, {powers[i][0], powers[i][1], powers[i][2]}});
     finish_polynomial(reader, object, std::move(polynomial));
 }
 
@@ -427,7 +427,7 @@ void parse_quadric(Reader& reader, Object& object) {
 void parse_polynomial(Reader& reader, Object& object) {
     int order = object.kind == "cubic" ? 3 : 4;
     if (object.kind == "poly") {
-        order = parse_int(reader, 2, 35, "the order of a poly");
+        order = parse_int(reader, 2, kMaxOrder, "the order of a poly");
         reader.take_comma();
     }
     finish_polynomial(reader, object, polynomial_of(order, parse_factors(reader, order)));
