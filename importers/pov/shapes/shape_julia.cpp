@@ -71,10 +71,8 @@ struct JuliaSet {
                 0.5 * (v.imag() - u.imag()), 0.5 * (u.real() - v.real())};
     }
 
-    double bailout() const {
-        const double farthest = quaternions ? 1 + std::sqrt(square_of(c)) : 4;
-        return farthest * farthest;
-    }
+    /// Returns the distance of no return, beyond which povray draws no part of the set.
+    double farthest() const { return quaternions ? 1 + std::sqrt(square_of(c)) : 4; }
 
     /// Returns the square of the distance that so many iterations lead to, at most, from the
     /// origin. They end beyond `limit`.
@@ -96,7 +94,7 @@ struct JuliaSet {
     /// below 0 where none does. Where povray's rays meet the set, the iteration before the last has
     /// gone a distance of 1 + |c| among quaternions, and of 4 among hypercomplex numbers.
     double operator()(const dvec3& at) const {
-        const double limit = bailout();
+        const double limit = farthest() * farthest();
         const double value = std::log(square_after(at, iterations - 1, limit) / limit);
         return value >= -3 ? std::min(value, 3.0) : std::isnan(value) ? 3.0 : -3.0;
     }
@@ -145,14 +143,14 @@ bool take_function(Reader& reader, JuliaSet& set) {
 
 /// Returns a box around the set, by looking at a grid of points.
 Box box_of(const JuliaSet& set) {
-    constexpr int kHalf = 40;
-    constexpr double kStep = 2.0 / kHalf;
+    constexpr int kHalf = 60;
+    const double step = set.farthest() / kHalf;
     std::array<Box, 2 * kHalf + 1> layers;
     parallel_for(layers.size(), 1, [&](size_t first, size_t last) {
         for (size_t k = first; k < last; ++k)
             for (int i = -kHalf; i <= kHalf; ++i)
                 for (int j = -kHalf; j <= kHalf; ++j) {
-                    const dvec3 at = kStep * dvec3(i, j, double(k) - kHalf);
+                    const dvec3 at = step * dvec3(i, j, double(k) - kHalf);
                     if (set(at) < 0)
                         layers[k].add(at);
                 }
@@ -163,7 +161,7 @@ Box box_of(const JuliaSet& set) {
             box.add(layer.lo);
             box.add(layer.hi);
         }
-    return box.empty() ? box : box.padded(2 * kStep);
+    return box.empty() ? box : box.padded(2 * step);
 }
 
 /// Sets have folds of all sizes, so they are cut finer than smooth shapes.
@@ -205,7 +203,7 @@ Shape parse_julia_fractal(Reader& reader) {
         reader.fail(place, "found a slice whose fourth component is 0");
     Shape shape;
     shape.per_square = 28; // as measured: 24 to 32
-    shape.box = Box{dvec3(-2), dvec3(2)};
+    shape.box = Box{dvec3(0), dvec3(0)}.padded(set.farthest());
     shape.cut = [set](int segments, bool, Facets& out) { cut_set(set, segments, out); };
     return shape;
 }
