@@ -174,9 +174,10 @@ Shape parse_disc(Reader& reader) {
 }
 
 Shape parse_superellipsoid(Reader& reader) {
-    const dvec2 exponents = parse_vector2(reader);
-    if (!(exponents.x > 0 && exponents.y > 0))
-        reader.fail(reader.place(), "found a superellipsoid whose exponents are not above 0");
+    const dvec2 given = parse_vector2(reader);
+    if (!(given.x >= 0 && given.y >= 0))
+        reader.fail(reader.place(), "found a superellipsoid whose exponents are below 0");
+    const dvec2 exponents = glm::max(given, 1e-3); // as povray draws those that are less
     return curved(
         1, 0,
         [=](int segments, bool, Facets& out) {
