@@ -33,17 +33,18 @@ size_t max_shadow_rays(const Scene& scene) {
     return scene.lights.size() + size_t(asked * kMaxScatteringPlaces);
 }
 
+/// The factors are those of povray 3.7.0.10, as measured of its pixels at fifteen angles.
 double phase_of(const Medium& medium, double cosine) {
-    const double e = double(medium.eccentricity);
+    const double e = double(medium.eccentricity), forward = 0.5 * (1 + cosine);
     switch (medium.phase) {
     case Medium::Phase::Even:
         break;
     case Medium::Phase::MieHazy:
-        return 0.5 + 4.5 * std::pow(0.5 * (1 + cosine), 8);
+        return 0.57666 * (1 + 9 * std::pow(forward, 8));
     case Medium::Phase::MieMurky:
-        return 0.5 + 16.5 * std::pow(0.5 * (1 + cosine), 32);
+        return 0.49571 * (1 + 50 * std::pow(forward, 32));
     case Medium::Phase::Rayleigh:
-        return 0.75 * (1 + cosine * cosine);
+        return 0.79937 * (1 + cosine * cosine);
     case Medium::Phase::HenyeyGreenstein:
         return (1 - e * e) / std::pow(1 + e * e - 2 * e * cosine, 1.5);
     }
