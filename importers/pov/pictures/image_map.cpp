@@ -11,17 +11,38 @@
 #include <fmt/format.h>
 
 #include <cassert>
+#include <cmath>
 
 namespace ovc::pov {
 
 namespace {
 
-/// Returns the light of the 256 codes of a sample. Before version 3.7 they are not taken for sRGB.
-std::array<double, 256> light_of_codes(const Reader& reader) {
+/// What a block's word gamma says: light is a code ^ gamma, or sRGB's (kSrgbGamma).
+using GivenGamma = std::optional<double>;
+
+/// Returns the power that turns codes into colors of the scene, or 0 for sRGB's curve. The colors
+/// of a scene with an assumed_gamma are light ^ (1 / gamma); the curve is taken for a power of 2.2
+/// then. Before version 3.7 codes are colors, unless a gamma is given.
+double gamma_of(const Reader& reader, const GivenGamma& given) {
+    constexpr double kCurve = 2.2;
+    const bool is_srgb = !given || *given == kSrgbGamma;
+    if (!reader.has_linear_colors())
+        return given.value_or(1);
+    if (reader.gamma == kSrgbGamma)
+        return is_srgb ? 1 : *given / kCurve;
+    if (is_srgb)
+        return reader.gamma == 1 ? 0 : kCurve / reader.gamma;
+    return *given / reader.gamma;
+}
+
+/// Returns the light of the 256 codes of a sample.
+std::array<double, 256> light_of_codes(const Reader& reader, const GivenGamma& given) {
+    const bool is_srgb = given ? *given == kSrgbGamma : reader.has_linear_colors();
+    const double power = gamma_of(reader, given);
+    const double to = reader.has_linear_colors() ? reader.gamma : 1;
     std::array<double, 256> light;
     for (size_t i = 0; i < light.size(); ++i)
-        light[i] =
-            reader.has_linear_colors() ? from_srgb(double(i) / 255, reader.gamma) : double(i) / 255;
+        light[i] = is_srgb ? from_srgb(double(i) / 255, to) : std::pow(double(i) / 255, power);
     return light;
 }
 
@@ -36,15 +57,6 @@ Color average(const Picture& picture, const std::array<double, 256>& linear) {
     }
     const double count = double(picture.size());
     return {vec3(sum / count), 0, float(1 - opacity / count)};
-}
-
-/// Returns the power that turns codes into colors of the scene, or 0 for sRGB's curve. The colors
-/// of a scene with an assumed_gamma are light ^ (1 / gamma); the curve is taken for a power of 2.2
-/// then.
-double gamma_of(const Reader& reader) {
-    if (!reader.has_linear_colors() || reader.gamma == kSrgbGamma)
-        return 1;
-    return reader.gamma == 1 ? 0 : 2.2 / reader.gamma;
 }
 
 /// Reads `all A`, or the number of a color and A, behind filter or transmit.
@@ -64,6 +76,7 @@ struct MapWords {
     bool smooth = false;
     int type = 0; // 0: the picture lies on x and y
     std::optional<double> bump_size;
+    GivenGamma gamma;
     bool use_index = false; // the value is the number of a color in the table, not its brightness
 
     /// Returns the projection of the type; nothing for one that POV-Ray does not have.
@@ -103,6 +116,8 @@ MapWords parse_map_words(Reader& reader, bool of_materials = false) {
             words.type = int(parse_float(reader));
         else if (reader.take("bump_size"))
             words.bump_size = parse_float(reader);
+        else if (reader.take("gamma"))
+            words.gamma = parse_gamma(reader);
         else if (reader.take("use_index"))
             words.use_index = true;
         else if (reader.take("use_color") || reader.take("use_colour"))
@@ -121,7 +136,7 @@ PatternPtr shown_by_textures(const Reader& reader, const Place& start, const std
                              const MapWords& words, const Pigment& pigment) {
     ImageTexture image;
     image.projection = *words.projection();
-    image.gamma = gamma_of(reader);
+    image.gamma = gamma_of(reader, words.gamma);
     image.filter = words.smooth ? TexelFilter::Smooth : TexelFilter::Nearest;
     image.beyond_s = image.beyond_t = words.transparency.once
                                           ? (pigment.holes ? Beyond::Clamp : Beyond::Nothing)
@@ -170,7 +185,7 @@ NamedPicture take_picture(Reader& reader, const std::string& block) {
 ImageMap image_of_codes(const NamedPicture& named, const MapWords& words) {
     ImageTexture image;
     image.projection = *words.projection();
-    image.gamma = 1;
+    image.gamma = words.gamma.value_or(1);
     image.filter = words.smooth ? TexelFilter::Smooth : TexelFilter::Nearest;
     image.beyond_s = image.beyond_t = words.transparency.once ? Beyond::Nothing : Beyond::Repeat;
     const Place& start = named.start;
@@ -186,8 +201,13 @@ const Note* not_drawn(Reader& reader, const Token& word, const Place& at, const 
                        fmt::format("{}: the {} is left out", why, word.name->text));
 }
 
-/// Returns a texture of the numbers of the picture's colors in its table, or of its reds without
-/// one, modulo `count`, as codes of 8 bits.
+/// Returns which of `count` a number chooses in povray: the last one where it equals the count.
+size_t chosen_of(size_t number, size_t count) {
+    return number == count ? count - 1 : number % count;
+}
+
+/// Returns a texture of which of `count` the numbers of the picture's colors in its table choose,
+/// or its reds without one, as codes of 8 bits.
 Result<ImageMap> image_of_indices(const NamedPicture& named, const MapWords& words, size_t count) {
     const Picture& picture = *named.picture;
     std::vector<uint16_t> samples;
@@ -195,7 +215,7 @@ Result<ImageMap> image_of_indices(const NamedPicture& named, const MapWords& wor
     for (size_t i = 0; i < picture.size(); ++i) {
         const size_t index =
             picture.indices.empty() ? picture.pixels[i][0] >> 8 : picture.indices[i];
-        samples.insert(samples.end(), 3, uint16_t(257 * (index % count)));
+        samples.insert(samples.end(), 3, uint16_t(257 * chosen_of(index, count)));
     }
     const Result<std::string> png =
         write_png({picture.width, picture.height, 8, samples}, "Overcast");
@@ -203,6 +223,7 @@ Result<ImageMap> image_of_indices(const NamedPicture& named, const MapWords& wor
         return png.error();
     ImageMap map = image_of_codes(named, words);
     map.image.filter = TexelFilter::Nearest;
+    map.image.gamma = 1;
     map.contents = std::make_shared<const std::vector<uint8_t>>(png->begin(), png->end());
     map.path += fmt::format(", choosing from {}", count);
     return map;
@@ -223,6 +244,16 @@ ValueMap values_of_materials(Reader& reader, const Token& word, const NamedPictu
 }
 
 } // namespace
+
+double parse_gamma(Reader& reader) {
+    if (reader.take("srgb"))
+        return kSrgbGamma;
+    const Place at = reader.peek().place;
+    const double gamma = parse_float(reader);
+    if (!(gamma > 0))
+        reader.fail(at, fmt::format("found a gamma of {}, expected one above 0", gamma));
+    return gamma;
+}
 
 ValueMap parse_value_map(Reader& reader, const Token& word) {
     const NamedPicture named = take_picture(reader, word.name->text);
@@ -271,7 +302,7 @@ void parse_image_map(Reader& reader, const Token& word, Pigment& pigment) {
         return;
     }
     const Result<Picture>& picture = named.picture;
-    const std::array<double, 256> light = light_of_codes(reader);
+    const std::array<double, 256> light = light_of_codes(reader, words.gamma);
     pigment.color = average(*picture, light);
     pigment.color.filter += words.transparency.all.filter;
     pigment.color.transmit += words.transparency.all.transmit;

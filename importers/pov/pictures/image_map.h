@@ -9,6 +9,9 @@
 
 namespace ovc::pov {
 
+/// Reads what the word gamma says: light is a code ^ gamma, or sRGB's (kSrgbGamma).
+double parse_gamma(Reader& reader);
+
 /// Reads an image_map from its { on. Sets the pigment's color to the picture's average, or to a
 /// middle grey where the picture cannot be read, its notes to say so, and its holes.
 void parse_image_map(Reader& reader, const Token& word, Pigment& pigment);
@@ -24,7 +27,8 @@ struct ValueMap {
 ValueMap parse_value_map(Reader& reader, const Token& word);
 
 /// Returns a picture whose values are i / 255 for texture i of `count`, which is 1 to 256: the
-/// index into the picture's table of colors, or without a table its red, modulo `count`.
+/// index into the picture's table of colors, or without a table its red, modulo `count`, but the
+/// last texture for `count` itself.
 using MaterialValues = std::function<ValueMap(Reader& reader, size_t count)>;
 
 /// Reads the picture of a material_map, from its { to the first texture.

@@ -4,6 +4,7 @@
 #include "importers/test_files.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace ovc {
@@ -144,6 +145,46 @@ TEST(PovMaterialMap, RedsChooseTexturesModuloTheirNumber) {
         EXPECT_LT(mix.stops[2 * i].at, double(i) / 255);
         EXPECT_GT(mix.stops[2 * i + 1].at, double(i) / 255);
     }
+}
+
+/// povray 3.7.0.10 draws a red of 3, of three textures, by the last of them.
+TEST(PovMaterialMap, TheNumberOfTexturesChoosesTheLast) {
+    const TestFolder folder;
+    folder.write("a.png", png_of(3, 1, {3, 0, 0, 255, 4, 0, 0, 255, 6, 0, 0, 255}));
+    const Result<Scene> scene = load(folder.write(
+        "a.pov",
+        "sphere { 0, 1 texture { material_map { png \"a.png\" texture { pigment { rgb 0 } } "
+        "texture { pigment { rgb 1 } } texture { pigment { rgb x } } } } }"));
+    ASSERT_TRUE(scene) << scene.error().message;
+    ASSERT_EQ(scene->pictures.size(), 1u);
+    const Result<Picture> picture = read_png(scene->pictures[0].contents);
+    ASSERT_TRUE(picture);
+    for (size_t i = 0; i < 3; ++i)
+        EXPECT_EQ(picture->pixels[i][0] >> 8, (std::array{2, 1, 0})[i]);
+}
+
+/// As povray 3.7.0.10 prints them for function { pigment { image_map } } of a red of 128.
+TEST(PovImageMap, HasTheGammaThatItsBlockSays) {
+    const auto red = [](const std::string& settings, const std::string& gamma) {
+        const TestFolder folder;
+        folder.write("a.png", png_of(2, 1, {128, 64, 200, 255, 128, 64, 200, 255}));
+        const Result<Scene> scene = load(
+            folder.write("a.pov", settings + " sphere { 0, 1 pigment { image_map { png \"a.png\" " +
+                                      gamma + " } } }"));
+        EXPECT_TRUE(scene) << (scene ? "" : scene.error().message);
+        const Material& m = scene->materials[scene->meshes.at(0).material];
+        const double power = scene->textures[m.texture.value().texture].image->gamma;
+        return power > 0 ? std::pow(128 / 255.0, power) : power;
+    };
+    const std::string linear = "#version 3.7; global_settings { assumed_gamma 1 }";
+    const std::string old_screen = "#version 3.7; global_settings { assumed_gamma 2.2 }";
+    EXPECT_NEAR(red(linear, "gamma 1"), 0.50196, 1e-5);
+    EXPECT_NEAR(red(linear, "gamma 3"), 0.12648, 1e-5);
+    EXPECT_EQ(red(linear, "gamma srgb"), 0);
+    EXPECT_NEAR(red(old_screen, "gamma 1"), 0.73104, 1e-5);
+    EXPECT_NEAR(red(old_screen, "gamma 3"), 0.39068, 1e-5);
+    EXPECT_NEAR(red("", ""), 0.50196, 1e-5);
+    EXPECT_NEAR(red("", "gamma 3"), 0.12648, 1e-5);
 }
 
 TEST(PovMaterialMap, WithoutItsPictureTheFirstTextureStands) {

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdlib>
 
 namespace ovc::pov {
@@ -141,6 +142,8 @@ TEST(PovHeightField, StandsWherePovRayHasIt) {
     EXPECT_NEAR(height(gray, "<0.99999, 5, 0.99999>"), 200, 0.02);
     EXPECT_NEAR(height(gray + " smooth water_level 0.4", "<0.375, 5, 0.25>"), 115, 0.02);
     EXPECT_EQ(height(gray + " water_level 0.4", "<0.25, 5, 0.5>"), 0);
+    EXPECT_NEAR(height(gray + " gamma 3", "<0.00001, 5, 0.00001>") / 255, std::pow(100 / 255.0, 3),
+                1e-4);
     const std::string colors =
         "ppm \"" +
         folder

@@ -2,6 +2,7 @@
 // Reads height_field: a grid of heights over the square from 0 to 1 in x and z, from a picture or a
 // function. The first row lies at z = 1.
 #include "importers/file/text.h"
+#include "importers/pov/pictures/image_map.h"
 #include "importers/pov/pictures/picture.h"
 #include "importers/pov/shapes/shape.h"
 #include "importers/pov/values/function.h"
@@ -10,6 +11,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <memory>
 
 namespace ovc::pov {
@@ -205,9 +207,12 @@ Shape parse_height_field(Reader& reader) {
             grid.smooth = parse_flag(reader);
         else if (reader.take("water_level"))
             grid.water_level = parse_float(reader);
-        else if (reader.take("gamma")) // heights are taken as the file has them
-            parse_float(reader);
-        else
+        else if (reader.take("gamma")) {
+            const double gamma = parse_gamma(reader);
+            for (float& height : grid.heights)
+                height = float(gamma == kSrgbGamma ? from_srgb(double(height), 1)
+                                                   : std::pow(double(height), gamma));
+        } else
             more = reader.take(',');
     }
     Shape shape;
