@@ -196,6 +196,8 @@ Cover Gatherer::cover_of(const Object& object, const Inherited& from, bool in_so
         look_.tell({"uv_mapping of a shape", object.place,
                     "uv_mapping of lathes, patches, parametrics and meshes is left out in "
                     "solids"});
+    if (from.uv_mapping && texture.normal.pattern.pattern && look_.tell)
+        look_.tell({"normal uv_mapping", object.place, "uv_mapping of a normal is left out"});
     if (has_holes)
         cover.holes = holes.number(
             pigment, on_uv ? pigment.placed : from.texture_placed * pigment.placed, on_uv);

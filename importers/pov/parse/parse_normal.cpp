@@ -29,10 +29,8 @@ static Bump::Kind bump_of(const Token& pattern) {
     return pattern.is("wrinkles") ? Bump::Kind::Wrinkles : Bump::Kind::Height;
 }
 
-/// Returns the note that says that a part of a normal is left out.
-static const Note* left_out_of_normal(Reader& reader, const Token& word) {
-    return reader.note("normal " + word.name->text, word.place,
-                       fmt::format("{} of a normal is left out", word.name->text));
+static const Note* uv_mapping_left_out(Reader& reader, const Place& at) {
+    return reader.note("normal uv_mapping", at, "uv_mapping of a normal is left out");
 }
 
 /// Reads the block of a bump_map, whose picture takes the place of the normal's pattern.
@@ -49,16 +47,6 @@ static void take_bump_map(Reader& reader, const Token& word, Normal& normal) {
     auto map = std::make_shared<PatternMap>();
     map->image_map = values.image;
     normal.pattern.pattern = std::move(map);
-}
-
-/// Takes a part that Overcast leaves out.
-static bool take_other_part(Reader& reader, const Token& token, Normal& normal) {
-    if (!token.is("uv_mapping"))
-        return false;
-    reader.next();
-    normal.pattern.notes.push_back(left_out_of_normal(reader, token));
-    skip_arguments(reader);
-    return true;
 }
 
 std::vector<SlopeStop> parse_slope_map(Reader& reader) {
@@ -86,6 +74,7 @@ std::vector<SlopeStop> parse_slope_map(Reader& reader) {
 Normal parse_normal_parts(Reader& reader, const Normal& base, char end) {
     const Deeper deeper(reader);
     Normal normal = base;
+    std::optional<Place> on_uv; // noted at the end, because a pattern forgets what was before it
     PatternParts pattern(reader, normal.pattern, MapOf::Normals);
     while (!reader.peek().is(end)) {
         const Token token = reader.peek();
@@ -105,7 +94,9 @@ Normal parse_normal_parts(Reader& reader, const Normal& base, char end) {
         else if (reader.take("bump_map")) {
             pattern.forget();
             take_bump_map(reader, token, normal);
-        } else if (take_other_part(reader, token, normal)) {
+        } else if (reader.take("uv_mapping")) {
+            if (parse_flag(reader))
+                on_uv = token.place;
         } else if (pattern.take()) {
             if (pattern.is_pattern(token)) {
                 normal.kind = bump_of(token);
@@ -117,6 +108,8 @@ Normal parse_normal_parts(Reader& reader, const Normal& base, char end) {
             reader.fail_here("a part of a normal");
     }
     pattern.finish();
+    if (on_uv)
+        normal.pattern.notes.push_back(uv_mapping_left_out(reader, *on_uv));
     return normal;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/texture/pattern.h"
 #include "importers/readers.h"
+#include "importers/test_files.h"
 
 #include <gtest/gtest.h>
 
@@ -261,6 +262,21 @@ TEST(PovNormal, TiltsNormals) {
     EXPECT_EQ(box_material(named).bump->kind, Bump::Kind::Noise);
     EXPECT_EQ(box_material(named).bump->amount, 0.7);
     EXPECT_TRUE(scene.omissions.empty());
+}
+
+TEST(PovNormal, LeavesOutTextureCoordinatesWithAWarning) {
+    for (const char* look :
+         {"normal { uv_mapping bumps 1 }", "normal { bumps 1 uv_mapping }",
+          "normal { uv_mapping gradient x 1 scale 2 }", "uv_mapping normal { bumps 1 }",
+          "uv_mapping texture { normal { gradient x 1 } }"}) {
+        std::vector<std::string> warnings;
+        ASSERT_TRUE(
+            parse_pov("sphere { 0, 1 " + std::string(look) + " }", "x.pov", gather(warnings)))
+            << look;
+        ASSERT_EQ(warnings.size(), 1u) << look;
+        EXPECT_NE(warnings[0].find("uv_mapping of a normal is left out"), std::string::npos)
+            << warnings[0];
+    }
 }
 
 TEST(PovNormal, HasFacets) {
