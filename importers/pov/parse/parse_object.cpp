@@ -35,6 +35,7 @@ const std::unordered_map<std::string_view, ParseShape> kShapes = {
     {"prism", parse_prism},
     {"lathe", parse_lathe},
     {"sor", parse_sor},
+    {"ovus", parse_ovus},
     {"superellipsoid", parse_superellipsoid},
     {"bicubic_patch", parse_bicubic_patch},
     {"text", parse_text_shape},

@@ -26,6 +26,7 @@ Shape parse_polygon(Reader& reader);
 Shape parse_prism(Reader& reader);
 Shape parse_lathe(Reader& reader);
 Shape parse_sor(Reader& reader);
+Shape parse_ovus(Reader& reader);
 
 // shape_height_field.cpp
 Shape parse_height_field(Reader& reader);

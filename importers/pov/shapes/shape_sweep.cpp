@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads shapes of a curve that is swept along y (prism) or around it (lathe, sor).
+// Reads shapes of a curve that is swept along y (prism) or around it (lathe, sor, ovus).
 #include "importers/pov/shapes/contour.h"
 #include "importers/pov/shapes/shape.h"
 #include "importers/pov/shapes/simple_contours.h"
 #include "importers/pov/shapes/sweep.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <numbers>
 #include <optional>
 
 namespace ovc::pov {
@@ -248,6 +251,59 @@ Shape parse_sor(Reader& reader) {
                 };
                 out.add(corner(0), corner(top ? step : step + 1), corner(top ? step + 1 : step));
             }
+    };
+    return shape;
+}
+
+/// Adds the points of a circle's arc, whose angles count from the profile's outside towards its
+/// top.
+static void add_arc(const dvec2& center, double radius, double from, double to, int segments,
+                    std::vector<ProfilePoint>& profile) {
+    const int steps =
+        std::max(2, int(std::lround((to - from) / (2 * std::numbers::pi) * segments)));
+    for (int i = 0; i <= steps; ++i) {
+        const double angle = glm::mix(from, to, double(i) / steps);
+        const dvec2 out(std::cos(angle), std::sin(angle));
+        profile.push_back({center + radius * out, {-out.y, out.x}});
+    }
+}
+
+/// Reads `{ BOTTOM, TOP`: balls around 0 and around BOTTOM y, joined by the arc that touches both
+/// and is twice as large as the larger one. As measured of povray 3.7.0.10.
+Shape parse_ovus(Reader& reader) {
+    const Place at = reader.peek().place;
+    const double bottom = parse_float(reader);
+    reader.take_comma();
+    const double top = parse_float(reader);
+    if (!(bottom >= 0 && top >= 0 && bottom + top > 0))
+        reader.fail(at, fmt::format("found an ovus of the radii {} and {}, expected some above 0",
+                                    bottom, top));
+    const bool is_ball = top >= 2 * bottom;
+    if (is_ball)
+        reader.warn("ovus", at, "an ovus whose second radius is twice its first is a sphere");
+    const double radius = 2 * std::max(bottom, top);
+    const double to_bottom = radius - bottom, to_top = radius - top; // from the arc's center
+    const double y =
+        is_ball ? 0 : (bottom + (to_bottom * to_bottom - to_top * to_top) / bottom) / 2;
+    const dvec2 center(-std::sqrt(std::max(0.0, to_bottom * to_bottom - y * y)), y);
+    const double low = std::atan2(-center.y, -center.x);
+    const double high = std::atan2(bottom - center.y, -center.x);
+    Shape shape;
+    shape.per_square = 1;
+    shape.per_segment = 8;
+    shape.cut = [=](int segments, bool, Facets& out) {
+        const double quarter = std::numbers::pi / 2;
+        const dvec2 peak(0, bottom);
+        std::vector<ProfilePoint> profile;
+        if (is_ball)
+            add_arc(peak, top, -quarter, quarter, segments, profile);
+        else {
+            add_arc({0, 0}, bottom, -quarter, low, segments, profile);
+            add_arc(center, radius, low, high, segments, profile);
+            add_arc(peak, top, high, quarter, segments, profile);
+        }
+        profile.front().at.x = profile.back().at.x = 0;
+        revolve(profile, segments, nullptr, out);
     };
     return shape;
 }
