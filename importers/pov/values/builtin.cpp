@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <charconv>
 #include <cmath>
 #include <numbers>
 #include <unordered_map>
@@ -191,6 +192,16 @@ Number axis(Reader&, const Token&) {
     return Number::of(dvec3(X, Y, Z));
 }
 
+/// Returns the number that the text begins with, as povray does; 0 where it begins with none.
+double number_at_start(std::string_view text) {
+    text = trimmed(text);
+    if (text.starts_with('+'))
+        text.remove_prefix(1);
+    double value = 0;
+    std::from_chars(text.data(), text.data() + text.size(), value);
+    return value;
+}
+
 const std::unordered_map<std::string_view, Builtin> kBuiltins = {
     {"x", axis<1, 0, 0>},
     {"y", axis<0, 1, 0>},
@@ -265,9 +276,7 @@ const std::unordered_map<std::string_view, Builtin> kBuiltins = {
      }},
     {"val",
      [](Reader& r, const Token& t) {
-         return of_text(r, t, [](const std::string& s) {
-             return Number::of(parse_double(trimmed(s)).value_or(0));
-         });
+         return of_text(r, t, [](const std::string& s) { return Number::of(number_at_start(s)); });
      }},
     {"file_exists",
      [](Reader& r, const Token& t) {

@@ -13,6 +13,7 @@
 #include <cassert>
 #include <charconv>
 #include <cmath>
+#include <limits>
 
 namespace ovc::pov {
 
@@ -197,6 +198,23 @@ Number parse_factor(Reader& reader) {
     return n;
 }
 
+/// As povray, whose quotient by 0 is infinity, even of numbers below 0. Colors that have no filter
+/// get none by a division.
+Number divided(Reader& reader, const Token& op, Number a, Number b) {
+    make_alike(a, b);
+    bool by_zero = false;
+    for (size_t i = 0; i < size_t(a.size); ++i) {
+        const bool is_channel = i >= 3 && a.v[i] == 0;
+        by_zero = by_zero || (b.v[i] == 0 && !is_channel);
+        a.v[i] = b.v[i] != 0 ? a.v[i] / b.v[i]
+                             : (is_channel ? 0 : std::numeric_limits<double>::infinity());
+    }
+    if (by_zero)
+        reader.warn("division by zero", op.place,
+                    "found a division by zero, whose value is infinity");
+    return a;
+}
+
 Number parse_product(Reader& reader) {
     Number n = parse_factor(reader);
     for (;;) {
@@ -207,12 +225,8 @@ Number parse_product(Reader& reader) {
         const Number right = parse_factor(reader);
         if (op.is('*'))
             n = combined(n, right, [](double a, double b) { return a * b; });
-        else {
-            // POV-Ray stops where the divisor is the float 0. A vector's component of 0 gives 0.
-            if (right.size == 1 && right.v[0] == 0)
-                reader.fail(op.place, "found a division by zero");
-            n = combined(n, right, [](double a, double b) { return b == 0 ? 0 : a / b; });
-        }
+        else
+            n = divided(reader, op, n, right);
     }
 }
 
