@@ -84,11 +84,10 @@ const Solid kSolids[] = {
      "+ "
      "0.5*x } water_level 0.5 } }",
      0.125 * 0.375 * (1 - 0.25 - 0.5 * 0.6875)},
-    {"a_lathe_is_filled_to_its_axis",
-     "intersection { lathe { linear_spline 2, <1, -1>, <1, 1> } box { <-2, -0.5, -2>, <2, 0.5, 2> "
-     "} "
-     "}",
-     pi},
+    {"a_lathe_is_filled_to_its_least_radius",
+     "intersection { lathe { linear_spline 3, <0.5, -1>, <1, 0>, <0, 1> } "
+     "box { <-2, -0.5, -2>, <2, 2, 2> } }",
+     pi / 3 * (0.5 * (1 + 0.75 + 0.75 * 0.75) + 1)},
     {"a_lathe_in_pieces",
      "intersection { lathe { bezier_spline 8, <1, -1>, <1, -0.3>, <1, 0.3>, <1, 1>, <0.5, 1>, "
      "<0.5, 0.3>, <0.5, -0.3>, <0.5, -1> } box { <-2, -0.5, -2>, <2, 0.5, 2> } }",

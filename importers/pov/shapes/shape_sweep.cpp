@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 
@@ -104,16 +105,6 @@ void revolve(const std::vector<ProfilePoint>& profile, int segments, const dvec2
         }
 }
 
-/// Adds the disc within a place of the profile, facing up or down the axis.
-void add_disc(const dvec2& at, int segments, bool up, Facets& out) {
-    const auto corner = [&](int step) {
-        const dvec2 c = on_circle(step, segments);
-        return out.circle_radius * at.x * dvec3(c.x, 0, -c.y) + dvec3(0, at.y, 0);
-    };
-    for (int step = 0; step < segments; ++step)
-        out.add(dvec3(0, at.y, 0), corner(up ? step : step + 1), corner(up ? step + 1 : step));
-}
-
 /// Returns the pieces of a lathe's profile, each in so many steps.
 std::vector<std::vector<ProfilePoint>> lathe_profiles(Curve curve, const std::vector<dvec2>& points,
                                                       int steps) {
@@ -130,13 +121,17 @@ std::vector<std::vector<ProfilePoint>> lathe_profiles(Curve curve, const std::ve
     return profiles;
 }
 
-/// Adds a disc at each end of a lathe's profile that no other piece goes on from: povray fills the
-/// profile to the axis.
+/// Leads each end of a lathe's profile that no other piece goes on from back to a loose beginning,
+/// along the profile's least radius: povray's inside lies between the two, as its inside() tells.
 void close_lathe(const std::vector<std::vector<ProfilePoint>>& profiles, int segments,
                  Facets& out) {
-    std::vector<dvec2> begins;
-    for (const std::vector<ProfilePoint>& profile : profiles)
+    std::vector<dvec2> begins, ends;
+    double least = std::numeric_limits<double>::infinity();
+    for (const std::vector<ProfilePoint>& profile : profiles) {
         begins.push_back(profile.front().at);
+        for (const ProfilePoint& p : profile)
+            least = std::min(least, p.at.x);
+    }
     for (const std::vector<ProfilePoint>& profile : profiles) {
         const dvec2& end = profile.back().at;
         const auto next = std::find_if(begins.begin(), begins.end(),
@@ -144,10 +139,13 @@ void close_lathe(const std::vector<std::vector<ProfilePoint>>& profiles, int seg
         if (next != begins.end())
             begins.erase(next);
         else
-            add_disc(end, segments, /* up= */ true, out);
+            ends.push_back(end);
     }
-    for (const dvec2& begin : begins)
-        add_disc(begin, segments, /* up= */ false, out);
+    assert(begins.size() == ends.size());
+    for (size_t i = 0; i < ends.size(); ++i)
+        revolve(
+            {{ends[i], {}}, {{least, ends[i].y}, {}}, {{least, begins[i].y}, {}}, {begins[i], {}}},
+            segments, nullptr, out);
 }
 
 } // namespace
