@@ -215,11 +215,12 @@ private:
                 look_.irid_wavelengths = glm::max(parse_color(reader_).rgb, vec3(1e-6f));
             else if (reader_.take("radiosity"))
                 scene.radiosity = parse_radiosity(reader_);
+            else if (reader_.take("charset"))
+                reader_.next(); // ascii, utf8 or sys: texts are taken as UTF-8
             else if (const Token token = reader_.peek();
                      take_skipped(reader_, {"hf_gray_16", "photons", "subsurface"}))
                 reader_.omit(token.name->text, token.place, token.name->text + " is left out");
-            else if (!take_skipped(reader_,
-                                   {"adc_bailout", "charset", "max_intersections", "mm_per_unit"}))
+            else if (!take_skipped(reader_, {"adc_bailout", "max_intersections", "mm_per_unit"}))
                 reader_.fail_here("a part of global_settings");
         }
     }

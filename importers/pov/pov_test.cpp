@@ -757,6 +757,18 @@ TEST(PovErrors, FlatCamerasSeeLessThanHalfOfEverything) {
     EXPECT_FALSE(parse("camera { fisheye angle 361 }"));
 }
 
+/// Words that stand elsewhere than usual, or that POV-Ray 3.8 added.
+TEST(PovScene, WordsThatABlockHasAreTaken) {
+    for (const char* scene :
+         {"global_settings { charset utf8 assumed_gamma 1 }",
+          "isosurface { function { y } contained_by { sphere { 0, 1 } } open max_gradient 4 }",
+          "sphere { 0, 1 finish { specular 1 fresnel on } }",
+          "sphere { 0, 1 pigment { pavement number_of_sides 3 number_of_tiles 1 pattern 1 } }"}) {
+        const Result<Scene> read = parse(scene);
+        EXPECT_TRUE(read) << scene << ": " << read.error().message;
+    }
+}
+
 TEST(PovScene, LightMayComeFromBehind) {
     const auto finish = [](const std::string& object) {
         return *parse("#version 3.7; " + object)->materials.at(0).finish;

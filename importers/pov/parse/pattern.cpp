@@ -397,8 +397,9 @@ bool PatternParts::take_fractal_part() {
 bool PatternParts::take_own_part() {
     std::array<double, 10>& p = pattern_.parameters;
     if (take_fractal_part() ||
-        (refused_ && take_skipped(reader_, {"exterior", "form", "interior", "pattern", "sides",
-                                            "threshold", "tiles"})))
+        (refused_ &&
+         take_skipped(reader_, {"exterior", "form", "interior", "number_of_sides",
+                                "number_of_tiles", "pattern", "sides", "threshold", "tiles"})))
         return true;
     if (pattern_.kind == Kind::Quilted && reader_.take("control0"))
         p[0] = parse_float(reader_);

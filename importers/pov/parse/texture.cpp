@@ -207,7 +207,8 @@ Surface parse_finish(Reader& reader, const Surface& base) {
         if (const auto named_surface = take_named_if<Surface>(reader))
             surface = *named_surface;
         else if (!parse_finish_part(reader, surface) &&
-                 !take_left_out(reader, {"caustics", "reflection_exponent", "subsurface"},
+                 !take_left_out(reader, // the second is of POV-Ray 3.8
+                                {"caustics", "fresnel", "reflection_exponent", "subsurface"},
                                 "a finish", surface.notes))
             reader.fail_here("a part of a finish");
     }

@@ -447,6 +447,8 @@ void parse_isosurface(Reader& reader, Object& object) {
             threshold = parse_float(reader);
         else if (reader.take("accuracy") || reader.take("max_gradient") || reader.take("max_trace"))
             parse_float(reader);
+        else if (reader.take("open"))
+            object.open = parse_flag(reader);
         else if (reader.take("evaluate"))
             for (int i = 0; i < 3; ++i) {
                 parse_float(reader);
