@@ -93,6 +93,12 @@ static Result<int> run_named(const std::string& name, const Arguments& arguments
     return unknown_command(name);
 }
 
+/// Prints what the command does with a library that is loaded where it is there, or without it.
+static void print_part(bool is_there, std::string_view library, std::string_view with,
+                       std::string_view without) {
+    fmt::print("{} {}: {}\n", is_there ? "with" : "without", library, is_there ? with : without);
+}
+
 Result<int> run_command(const Arguments& arguments) {
     if (arguments.empty())
         return Error{"no command given; see overcast --help"};
@@ -105,18 +111,14 @@ Result<int> run_command(const Arguments& arguments) {
     }
     if (name == "--version" || name == "-V" || name == "version") {
         fmt::print("overcast {}\n", version_text());
-        if (ScenePictures::library_is_there())
-            fmt::print("with {}: surfaces show image textures\n", kTextureLibrary);
-        else
-            fmt::print("without {}: surfaces show no image textures; it is built where OpenImageIO "
-                       "is installed (Debian: libopenimageio-dev)\n",
-                       kTextureLibrary);
-        if (Ranks::library_is_there())
-            fmt::print("with {}: processes under mpirun share the work\n", kRankedProduct);
-        else
-            fmt::print("without {}: processes under mpirun cannot share the work; it is built "
-                       "where MPI is installed (Debian: libopenmpi-dev)\n",
-                       kRankedProduct);
+        print_part(ScenePictures::library_is_there(), kTextureLibrary,
+                   "surfaces show image textures",
+                   "surfaces show no image textures; it is built where OpenImageIO is installed "
+                   "(Debian: libopenimageio-dev)");
+        print_part(
+            Ranks::library_is_there(), kRankedProduct, "processes under mpirun share the work",
+            "processes under mpirun cannot share the work; it is built where MPI is installed "
+            "(Debian: libopenmpi-dev)");
         return kExitOk;
     }
     return run_named(name, {arguments.begin() + 1, arguments.end()});

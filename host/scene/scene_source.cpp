@@ -30,10 +30,10 @@ void SceneArguments::add_to(CLI::App& app, const char* name) {
            "For dragons-N and dragonball: the model they show instead of a generated one, a "
            "file or a test scene's name")
         ->type_name("SCENE");
-    app.add_flag(
-        "--strict", strict,
-        "What is unknown, missing or unusable in a scene, and what is not drawn as its author "
-        "meant, is an error, not a warning");
+    app.add_flag("--strict", strict,
+                 "An error, not a warning: what is unknown, missing or unusable in a .pbrt, what "
+                 "is not drawn "
+                 "as its author meant in a .pov, and an image texture that cannot be read");
     app.add_option("--world", world,
                    "For .pbrt: which world of a file that has several; default: 1")
         ->type_name("N");

@@ -267,14 +267,16 @@ Result<Scene> read_assimp(const std::filesystem::path& path, const ImportOptions
     auto* const files = new NotingFiles(options.files);
     importer.SetIOHandler(files); // the importer deletes it
     GltfFile gltf;
+    const aiScene* found = nullptr;
     if (is_gltf(path)) {
         Result<GltfFile> ready = read_gltf_file(*source);
         if (!ready)
             return ready.error();
         gltf = std::move(*ready);
+        found = read(importer, *files, gltf, path);
+    } else {
+        found = read(importer, *source, path);
     }
-    const aiScene* found =
-        is_gltf(path) ? read(importer, *files, gltf, path) : read(importer, *source, path);
     Scene scene;
     scene.name = path.stem().string();
     std::vector<std::string> left_out;

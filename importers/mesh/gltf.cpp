@@ -123,6 +123,21 @@ const Json& array(const Json& json, const char* name) {
     return at != json.end() && at->is_array() ? *at : none;
 }
 
+constexpr int kFloat = 5126; // a componentType
+
+/// Returns the accessor of that index, or null if the file has none there.
+const Json* accessor_at(const Json& gltf, const Json& index) {
+    const Json& accessors = array(gltf, "accessors");
+    if (!index.is_number_unsigned() || index.get<uint64_t>() >= accessors.size())
+        return nullptr;
+    const Json& accessor = accessors[index.get<size_t>()];
+    return accessor.is_object() ? &accessor : nullptr;
+}
+
+bool is_of_floats(const Json& accessor) {
+    return accessor.value("componentType", Json()) == kFloat;
+}
+
 /// What a file has that is not shown.
 class Omissions {
 public:
@@ -203,14 +218,6 @@ private:
         of.erase("skin");
     }
 
-    bool is_of_floats(const Json& index) const {
-        constexpr int kFloat = 5126;
-        const Json& accessors = array(gltf_, "accessors");
-        return !index.is_number_unsigned() || index.get<uint64_t>() >= accessors.size() ||
-               !accessors[index.get<size_t>()].is_object() ||
-               accessors[index.get<size_t>()].value("componentType", Json()) == kFloat;
-    }
-
     /// Assimp 5 takes the bytes of all positions, normals and texture coordinates for floats.
     void take_out_of(Json& primitive) {
         primitive.erase("targets");
@@ -220,7 +227,9 @@ private:
         bool is_even = true;
         for (const auto& [name, index] : attributes.items()) {
             colored_ += name == "COLOR_0";
-            is_even = is_even && (!name.starts_with("TEXCOORD_") || is_of_floats(index));
+            const Json* const accessor = accessor_at(gltf_, index);
+            is_even =
+                is_even && (!name.starts_with("TEXCOORD_") || !accessor || is_of_floats(*accessor));
         }
         uneven_ += !is_even;
         for (auto at = attributes.begin(); at != attributes.end();) {
@@ -244,12 +253,9 @@ std::optional<std::string> uneven_vertex(const Json& gltf) {
                     continue;
                 const Json index =
                     primitive.value(Json::json_pointer("/attributes") / name, Json());
-                const Json& accessors = array(gltf, "accessors");
-                if (!index.is_number_unsigned() || index.get<uint64_t>() >= accessors.size())
-                    continue;
-                const Json& accessor = accessors[index.get<size_t>()];
-                if (accessor.value("componentType", 0) != 5126 ||
-                    accessor.value("type", "") != "VEC3")
+                const Json* const accessor = accessor_at(gltf, index);
+                if (accessor &&
+                    (!is_of_floats(*accessor) || accessor->value("type", Json()) != "VEC3"))
                     return fmt::format("found {} in accessors[{}], which is no VEC3 of floats",
                                        name, index.get<size_t>());
             }

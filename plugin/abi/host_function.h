@@ -13,7 +13,8 @@ namespace ovc {
 inline constinit thread_local bool in_host_function = false;
 
 /// Marks the thread while it lives, and then puts back the floating-point mode that the function
-/// may have changed: what it was called from computes on, also on other threads.
+/// may have changed. The loop that called the function would compute on in that mode, on all of its
+/// threads.
 class HostFunction {
 public:
     HostFunction() { in_host_function = true; }

@@ -80,7 +80,7 @@ Result<SharedBudget::Use> PassRunner::begin_use(BuildProgress* progress) {
         add(progress, 0); // throws where the commit is cancelled
         return tracing_.watch.keeps_on();
     });
-    if (!use || (tracer_ && tracer_generation_ == gl_.generation()))
+    if (!use || (is_whole_ && tracer_ && tracer_generation_ == gl_.generation()))
         return use;
     if (const uint64_t bytes = share_.bytes(); bytes != std::exchange(planned_, bytes))
         plan_ = bytes < bytes_of(tracing_.scene, whole_) ? plan_within(bytes) : whole_;
@@ -114,6 +114,7 @@ Result<std::unique_ptr<Tracer>> PassRunner::make_tracer(GlState& state) {
 
 /// Makes the tracer, with a smaller pool where the driver has no room for the plan's.
 Result<Done> PassRunner::open(BuildProgress* progress) {
+    is_whole_ = false;
     while (true) {
         Result<std::unique_ptr<Tracer>> made = Error{};
         gl_.run([&](GlState& state) { made = make_tracer(state); });
@@ -138,19 +139,12 @@ Result<Done> PassRunner::open(BuildProgress* progress) {
                         plan_.pool_bytes, smaller));
         plan_.pool_bytes = smaller;
     }
+    bring_first(progress);
     gpu_bytes_ = tracer_->ledger().in_use;
     tracing_.statistics.gpu_peak_bytes =
         std::max(tracing_.statistics.gpu_peak_bytes, tracer_->ledger().peak);
-    // Kernels take for resident what the pool has room for, so a tracer that lacks some must go.
-    try {
-        bring_first(progress);
-    } catch (...) {
-        close();
-        throw;
-    }
     const Result<Done> fine = tracing_.watch.unless_cancelled();
-    if (!fine)
-        close();
+    is_whole_ = bool(fine);
     return fine;
 }
 
@@ -162,7 +156,7 @@ Result<bool> PassRunner::update_in_place(const MemoryPlan& anew, const PageChang
     if (!use)
         return use.error();
     bool updated = false;
-    if (tracer_)
+    if (tracer_ && is_whole_)
         gl_.run([&](GlState& state) {
             updated = is_ours(state) && tracer_->update(scene.level1.bounds, scene.pages,
                                                         changes.was, changes.changed);
@@ -385,7 +379,7 @@ Result<Done> PassRunner::finish_pass(Batch& batch) {
     if (!alive)
         return lost();
     if (!done) {
-        has_failed_ = true;
+        is_whole_ = false;
         return done.error();
     }
     const size_t count = batch.rays.size();
@@ -410,8 +404,6 @@ void PassRunner::abandon() {
                     gl_.finish(*job, [] {});
                 } catch (...) { // the call has failed already
                 }
-    if (std::exchange(has_failed_, false))
-        close();
 }
 
 std::vector<uint32_t> PassRunner::take_active() {

@@ -93,7 +93,7 @@ public:
     /// How many passes the device has under way at once.
     uint32_t passes_in_flight() const { return gl_.info().passes_in_flight; }
     /// When it goes, no pass is under way: it waits for those that a call which ends early has
-    /// begun, whatever they come to. Where one has failed, the next call makes the tracer anew.
+    /// begun, whatever they come to.
     class Scope {
     public:
         explicit Scope(PassRunner& passes) : passes_(passes) {}
@@ -158,9 +158,11 @@ private:
     std::unique_ptr<Tracer> tracer_; // made and destroyed on the thread of gl_
     std::atomic<uint64_t> gpu_bytes_{0};
     uint32_t tracer_generation_ = 0; // of the context that it was made in
+    /// Whether the pool has the pages that the tracer believes it has: not where the first were not
+    /// all brought, or a pass has failed. The next use then makes the tracer anew.
+    bool is_whole_ = false;
     std::array<Batch, 3> batches_;
     std::deque<Batch*> sent_; // those that nobody collects yet, the first that was sent in front
-    bool has_failed_ = false; // a pass: what is in the pool may not be what the tracer believes
     double seconds_a_ray_ = 1e-5; // of the pass before
     SharedBudget::Share share_;   // closes the tracer
 };
