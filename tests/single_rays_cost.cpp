@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // single_rays_cost SCENE [--threads N] [--size N] [--repeats N] measures rays asked one by one,
 // from as many threads as there are cores and from many more. It compares them with the plugin's
-// CPU tree in a plain loop, the CPU KD-tree, and the same rays gathered for the GPU. All take
-// turns; medians and the longest wait of a call are printed. On a machine that others use too,
-// compare rays per second of this process' CPU time.
+// CPU tree in a plain loop, the CPU KD-tree, the same rays gathered for the GPU, and batches on
+// either side of kMaxFewRays. All take turns; medians and the longest wait of a call are printed.
+// On a machine that others use too, compare rays per second of this process' CPU time.
 #include "core/system/parallel.h"
 #include "core/system/stopwatch.h"
 #include "host/bench/ray_sets.h"
@@ -45,10 +45,10 @@ struct Run {
 // A thread of a host takes so many rays at once.
 constexpr size_t kTile = 64;
 
-/// Calls ask(i) for i in [0, count) on so many threads, which share the rays as renderers share
-/// tiles.
+/// Calls ask(first, last) for all of [0, count) on so many threads, which share the rays as
+/// renderers share tiles.
 template <class Ask>
-Run on_threads(size_t threads, size_t count, Ask&& ask) {
+Run on_threads(size_t threads, size_t count, size_t tile, Ask&& ask) {
     std::atomic<size_t> next{0};
     std::vector<double> longest(threads);
     std::barrier start(ptrdiff_t(threads + 1));
@@ -56,11 +56,10 @@ Run on_threads(size_t threads, size_t count, Ask&& ask) {
     for (size_t t = 0; t < threads; ++t)
         running.emplace_back([&, t] {
             start.arrive_and_wait();
-            for (size_t first; (first = next.fetch_add(kTile)) < count;) {
+            for (size_t first; (first = next.fetch_add(tile)) < count;) {
                 // The time of a tile bounds its longest call.
                 const Stopwatch watch;
-                for (size_t i = first; i < std::min(first + kTile, count); ++i)
-                    ask(i);
+                ask(first, std::min(first + tile, count));
                 longest[t] = std::max(longest[t], watch.seconds());
             }
         });
@@ -91,12 +90,25 @@ std::vector<Contender> contenders(const Job& job, const KdTree& tree, const Soup
                                   TwoLevel& two_level, ovc_scene scene, Gathering& gathering) {
     const auto one_by_one = [scene](size_t threads) {
         return [scene, threads](const RaySet& set, std::vector<Hit>& hits) {
-            return on_threads(threads, set.rays.size(), [&](size_t i) {
-                if (test::api().intersect1(scene, reinterpret_cast<const ovc_ray*>(&set.rays[i]),
-                                           reinterpret_cast<ovc_hit*>(&hits[i]), nullptr) != OVC_OK)
+            return on_threads(threads, set.rays.size(), kTile, [&](size_t first, size_t last) {
+                for (size_t i = first; i < last; ++i)
+                    if (test::api().intersect1(
+                            scene, reinterpret_cast<const ovc_ray*>(&set.rays[i]),
+                            reinterpret_cast<ovc_hit*>(&hits[i]), nullptr) != OVC_OK)
+                        std::abort();
+            });
+        };
+    };
+    const auto in_batches = [scene](size_t rays, size_t threads) {
+        const auto run = [=](const RaySet& set, std::vector<Hit>& hits) {
+            return on_threads(threads, set.rays.size(), rays, [&](size_t first, size_t last) {
+                if (test::api().intersect(scene, reinterpret_cast<const ovc_ray*>(&set.rays[first]),
+                                          last - first, reinterpret_cast<ovc_hit*>(&hits[first]),
+                                          nullptr) != OVC_OK)
                     std::abort();
             });
         };
+        return Contender{fmt::format("{} rays a call, {} threads", rays, threads), run};
     };
     return {
         {"CPU tree of the plugin, plain loop",
@@ -121,10 +133,15 @@ std::vector<Contender> contenders(const Job& job, const KdTree& tree, const Soup
          }},
         {fmt::format("intersect1, {} threads", thread_count()), one_by_one(thread_count())},
         {fmt::format("intersect1, {} threads", job.threads), one_by_one(job.threads)},
+        in_batches(8, thread_count()),
+        in_batches(kMaxFewRays, 1),
+        in_batches(kMaxFewRays, thread_count()),
+        in_batches(kMaxFewRays + 1, 1),
+        in_batches(kMaxFewRays + 1, thread_count()),
         {fmt::format("gathered alone, {} threads", job.threads),
          [&](const RaySet& set, std::vector<Hit>& hits) {
              // This may be slow, so it gets a thirtieth of the rays.
-             return on_threads(job.threads, set.rays.size() / 30, [&](size_t i) {
+             return on_threads(job.threads, set.rays.size() / 30, 1, [&](size_t i, size_t) {
                  SingleRay asked;
                  asked.ray = set.rays[i];
                  gathering.answer(asked, [&](std::span<SingleRay* const> batch) {
@@ -164,7 +181,7 @@ void measure(const Job& job, const RaySet& set, std::vector<Contender> all) {
                 fmt::print("{}: other answers\n", contender.name);
         }
     fmt::print("{}, {} rays\n{:38}   Mrays/s   of the tree's   Mrays/CPU-s   of the tree's   "
-               "slowest {} rays\n",
+               "slowest call or {} rays\n",
                set.name, set.rays.size(), "", kTile);
     for (const Contender& contender : all) {
         const double rays = double(set.rays.size()) *

@@ -129,21 +129,27 @@ inline void check_notes(const RayCall& call, const Structure& structure) {
                             call.name));
 }
 
+/// Returns what the call excludes, without its filter. after: keeps the places that the hits lie
+/// behind where the answers are written over the caller's.
+inline Exclusions exclusions_of(const RayCall& call, std::vector<Hit>& after) {
+    Exclusions without = exclusions_of(call.query, call.rays.size());
+    if (call.query.after && without.after.data() == call.hits.data()) {
+        after.assign(without.after.begin(), without.after.end());
+        without.after = after;
+    }
+    return without;
+}
+
 /// Answers the call, for a thread that has the scene's turn. watch: nullptr, or asked as the rays
 /// go on. Throws a Failure.
 inline void trace(const RayCall& call, Structure& structure, TraceWatch* watch) {
     assert(call.has_buffers());
     check_notes(call, structure);
     check_structure(call.name, call.query, structure);
-    const size_t count = call.rays.size();
-    Exclusions without = exclusions_of(call.query, count);
+    std::vector<Hit> after;
+    Exclusions without = exclusions_of(call, after);
     const FilterOf filter(call.query);
     without.sieves.filters = filter.get();
-    std::vector<Hit> after; // a copy, where the answers come in its place
-    if (call.query.after && without.after.data() == call.hits.data()) {
-        after.assign(without.after.begin(), without.after.end());
-        without.after = after;
-    }
     const CallWatch::Scope watched(structure.call_watch(), watch);
     if (watch && !watch->goes_on(0))
         cancelled(call.name);
@@ -151,7 +157,8 @@ inline void trace(const RayCall& call, Structure& structure, TraceWatch* watch) 
         call.any_hit ? structure.occluded(call.rays, without, call.occluded)
         : call.max_hits
             ? structure.all_hits(call.rays, without, {*call.max_hits, call.hits, call.counts})
-            : structure.intersect_noted(call.rays, without, call.hits, notes_of(call.query, count));
+            : structure.intersect_noted(call.rays, without, call.hits,
+                                        notes_of(call.query, call.rays.size()));
     filter.check(call.name);
     if (!done && done.error().kind == ErrorKind::Cancelled)
         cancelled(call.name);

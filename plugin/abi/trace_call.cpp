@@ -8,12 +8,29 @@
 namespace ovc {
 namespace {
 
-/// Traces a batch in the scene's turn. make_call() checks the arguments, which needs no turn.
+/// Answers a batch that is not worth a call of the kernel, beside other calls. Returns false where
+/// it is to be traced like any other.
+bool answer_few(ovc_scene scene, const RayCall& call) {
+    if (call.rays.size() > kMaxFewRays || call.max_hits || call.query.filter ||
+        call.query.progress || notes_of(call.query, call.rays.size()).any() ||
+        scene->streaming == std::this_thread::get_id())
+        return false;
+    SingleRays::Call few(scene->single_rays);
+    std::vector<Hit> after;
+    const Exclusions without = exclusions_of(call, after);
+    return call.any_hit ? few.occluded(call.rays, without, call.occluded)
+                        : few.nearest(call.rays, without, call.hits);
+}
+
+/// Traces a batch, in the scene's turn unless it is small. make_call() checks the arguments, which
+/// needs no turn.
 template <class MakeCall>
 ovc_result batch_of_rays(ovc_scene scene, const char* name, MakeCall&& make_call) {
     HostFloatMode mode;
     return beside_scene(scene, name, [&] {
         const RayCall call = make_call();
+        if (answer_few(scene, call))
+            return;
         AskedProgress progress(call.query, mode);
         TraceWatch* const watch = call.query.progress ? &progress : nullptr;
         in_turn(

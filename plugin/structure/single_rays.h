@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// SingleRays: answers calls of one ray each from many threads at once, beside all other calls on
-// the scene. Each thread walks the CPU's tree, or all rays are gathered for the GPU, whichever is
-// faster.
+// SingleRays: answers calls of one ray each, and small batches, from many threads at once, beside
+// all other calls on the scene. Each thread walks the CPU's tree, or single rays are gathered for
+// the GPU, whichever is faster.
 #pragma once
 
 #include "core/system/turn.h"
@@ -66,7 +66,26 @@ public:
             rays_.way_.end(use, /* may_look= */ before % 64 == 0);
         }
 
+        /// Answers a batch where that is sooner than in the scene's turn; else returns false.
+        bool nearest(RaySpan rays, const Exclusions& without, std::span<Hit> hits) {
+            uint64_t invalid = 0;
+            return structure_ && structure_->intersect_few(rays, without, hits, invalid) &&
+                   count_batch(shard_.nearest, rays.size(), invalid);
+        }
+        bool occluded(RaySpan rays, const Exclusions& without, std::span<uint8_t> occluded) {
+            uint64_t invalid = 0;
+            return structure_ && structure_->occluded_few(rays, without, occluded, invalid) &&
+                   count_batch(shard_.occlusion, rays.size(), invalid);
+        }
+
     private:
+        bool count_batch(std::atomic<uint64_t>& rays, uint64_t count, uint64_t invalid) {
+            rays += count;
+            shard_.in_batches += count;
+            shard_.invalid += invalid;
+            return true;
+        }
+
         uint64_t answer_on_cpu(SingleRay& asked) {
             if (!asked.ray.valid())
                 add_one(shard_.invalid);
@@ -93,7 +112,7 @@ public:
             statistics.nearest_rays += shard.nearest;
             statistics.occlusion_rays += shard.occlusion;
             statistics.invalid_rays += shard.invalid;
-            statistics.single_rays += shard.asked();
+            statistics.single_rays += shard.single();
             statistics.gathered_rays += shard.gathered;
         }
     }
@@ -107,9 +126,10 @@ private:
         std::atomic<uint64_t> nearest{0}; // answered on the CPU, as the next two
         std::atomic<uint64_t> occlusion{0};
         std::atomic<uint64_t> invalid{0};
+        std::atomic<uint64_t> in_batches{0}; // of nearest and occlusion
         std::atomic<uint64_t> gathered{0};
 
-        uint64_t asked() const { return nearest + occlusion + gathered; }
+        uint64_t single() const { return nearest + occlusion - in_batches + gathered; }
     };
 
     Shard& own_shard() {

@@ -28,6 +28,11 @@ namespace ovc {
 
 class LeafStore;
 
+/// Rays that the CPU may answer before a pass of the kernel has begun: a call of the kernel takes
+/// some 100 us, whatever it is asked, and a ray on the CPU 0.2 to 2 (docs/benchmarks.md, "Single
+/// rays").
+inline constexpr size_t kMaxFewRays = 64;
+
 /// Answers rays through a soup. It takes one call at a time, except where a function says
 /// otherwise.
 class Structure {
@@ -68,6 +73,15 @@ public:
     virtual bool has_cpu_tree() const { return false; }
     virtual Hit nearest_on_cpu(const Ray&, const Exclusion&, const RaySieve&) const { return {}; }
     virtual bool occluded_on_cpu(const Ray&, const Exclusion&, const RaySieve&) const {
+        return false;
+    }
+    /// Answer at most kMaxFewRays rays on the CPU, where that is sooner than intersect() and
+    /// occluded() are: with the same bits, from any thread and beside all other calls. Add to
+    /// `invalid` how many rays are. Return false, having done nothing, where it is not sooner.
+    virtual bool intersect_few(RaySpan, const Exclusions&, std::span<Hit>, uint64_t&) const {
+        return false;
+    }
+    virtual bool occluded_few(RaySpan, const Exclusions&, std::span<uint8_t>, uint64_t&) const {
         return false;
     }
     /// Sets ranks[i] to the rank whose pages ray i comes by first, of those that no other rank has;

@@ -20,6 +20,7 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -209,6 +210,21 @@ public:
         enter_all(decided);
     }
 
+    /// Answers all rays of the query, which are few, for good. One thread walks the tree for all of
+    /// them: it would wait for others longer than they help it.
+    void answer_without_kernel() {
+        std::vector<uint32_t> rays(query_.rays.size());
+        std::iota(rays.begin(), rays.end(), 0u);
+        std::vector<InDoubt> asked;
+        in_lanes(rays, [&](RayStates& states, std::span<const uint32_t> some, size_t) {
+            for (uint32_t lanes = begins(states, some); lanes != 0; lanes &= lanes - 1)
+                asked.push_back({some[size_t(std::countr_zero(lanes))], kBeforeAll.t});
+        });
+        Decided decided;
+        fall_back(asked, decided, /* worth= */ asked.size() + 1);
+        enter_all(decided);
+    }
+
     /// Answers ray i for good, whatever it has met, unless the call is cancelled. That is asked for
     /// each ray, because some take a hundred times as long as most.
     void answer_exactly(uint32_t i) {
@@ -260,10 +276,9 @@ private:
 
     /// Returns a t before which ray i, of which this is the answer, hits nothing.
     double begin_of(uint32_t i, const Answer& answer) const {
-        constexpr double kUnknown = -std::numeric_limits<double>::infinity();
         if (Query::kAnyHit || !are_whole_ || answer.prim != OVC_FLAGGED ||
             !exclusion(i).after.is_before_all())
-            return kUnknown;
+            return kBeforeAll.t;
         const Ray ray = query_.rays[i];
         LocalTime time;
         if (!scene_.top.portals.empty())
@@ -495,10 +510,11 @@ private:
         return true;
     }
 
-    /// Answers the rays exactly. Those that meet many triangles are traced together.
-    void fall_back(std::span<const InDoubt> rays, Decided& decided) {
+    /// Answers the rays exactly, in parallel where there are as many as `worth`. Those that meet
+    /// many triangles are traced together.
+    void fall_back(std::span<const InDoubt> rays, Decided& decided, size_t worth = 8) {
         std::vector<FewFound> few(rays.size());
-        run(rays.size(), /* worth= */ 8, [&](size_t j) {
+        run(rays.size(), worth, [&](size_t j) {
             const auto [i, begin] = rays[j];
             count_fallback(i);
             if (tracing_.watch.keeps_on())

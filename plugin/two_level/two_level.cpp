@@ -131,6 +131,30 @@ bool TwoLevel::occluded_on_cpu(const Ray& ray, const Exclusion& without,
     return trace_exactly</* kAnyHit= */ true>(scene_, PreparedRay(ray, without)).is_hit();
 }
 
+template <class Query>
+bool TwoLevel::trace_few(const Query& query, uint64_t& invalid) const {
+    assert(query.rays.size() <= kMaxFewRays);
+    if (!has_cpu_tree() || !options_.certify || options_.tell_active ||
+        !query.without.sieves.pass_all())
+        return false;
+    ovc_statistics statistics{};
+    CallWatch nobody;
+    Resolver({scene_, options_, statistics, nobody}, query, /* are_whole= */ true)
+        .answer_without_kernel();
+    invalid += statistics.invalid_rays;
+    return true;
+}
+
+bool TwoLevel::intersect_few(RaySpan rays, const Exclusions& without, std::span<Hit> hits,
+                             uint64_t& invalid) const {
+    return trace_few(NearestQuery{rays, without, hits, {}, {}, {}}, invalid);
+}
+
+bool TwoLevel::occluded_few(RaySpan rays, const Exclusions& without, std::span<uint8_t> occluded,
+                            uint64_t& invalid) const {
+    return trace_few(OcclusionQuery{rays, without, occluded}, invalid);
+}
+
 Result<Done> TwoLevel::stream(StreamHost& host) {
     watch_.begin_call();
     const Result<SharedBudget::Use> use = passes_.begin_use();

@@ -41,6 +41,10 @@ public:
                        const RaySieve& sieve) const override;
     bool occluded_on_cpu(const Ray& ray, const Exclusion& without,
                          const RaySieve& sieve) const override;
+    bool intersect_few(RaySpan rays, const Exclusions& without, std::span<Hit> hits,
+                       uint64_t& invalid) const override;
+    bool occluded_few(RaySpan rays, const Exclusions& without, std::span<uint8_t> occluded,
+                      uint64_t& invalid) const override;
     Result<Done> stream(StreamHost& host) override;
     ovc_statistics report() const override; // make_two_level.cpp
     Result<ovc_active> take_active() override;
@@ -66,6 +70,8 @@ private:
     template <class Query>
     Result<Done> trace(const Query& query);
     Result<Done> trace_nearest(NearestQuery query);
+    template <class Query>
+    bool trace_few(const Query& query, uint64_t& invalid) const;
 
     BuiltScene scene_;
     const TwoLevelOptions options_;

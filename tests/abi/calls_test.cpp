@@ -140,6 +140,81 @@ TEST_F(Calls, SingleRaysHaveTheSameBitsWhicheverWayTheyGo) {
     EXPECT_LT(statistics.gathered_rays, statistics.single_rays);
 }
 
+/// Calls ask(first, count) for batches of 1 to 64 rays, which are all of them.
+template <class Ask>
+void in_small_batches(size_t rays, Ask&& ask) {
+    for (size_t first = 0, size = 1; first < rays; first += size, size = size % 64 + 1)
+        ask(first, std::min(size, rays - first));
+}
+
+TEST_F(Calls, SmallBatchesAreAnsweredAsLargeOnesAre) {
+    for (const auto& [name, soup] : test::unpleasant_soups()) {
+        SCOPED_TRACE(name);
+        const auto scene = committed(soup);
+        const auto rays = test::unpleasant_rays(soup, 17, 1500);
+        const auto first = nearest(scene, rays);
+        const auto skip = first_hits(first);
+        for (const bool skips : {false, true})
+            for (const bool goes_on : {false, true}) {
+                auto query = sized<ovc_query>();
+                query.skip = skips ? skip.data() : nullptr;
+                query.after = goes_on ? first.data() : nullptr;
+                const auto expected = nearest(scene, rays, &query);
+                const auto expected_shadows = occlusion(scene, rays, &query);
+                std::vector<ovc_hit> hits = first; // a query may be answered in place of `after`
+                std::vector<uint8_t> shadows(rays.size(), 2);
+                in_small_batches(rays.size(), [&](size_t i, size_t count) {
+                    auto part = sized<ovc_query>();
+                    part.skip = skips ? &skip[i] : nullptr;
+                    part.after = goes_on ? &first[i] : nullptr;
+                    ASSERT_EQ(
+                        api().occluded(scene.get(), as_abi(rays) + i, count, &shadows[i], &part),
+                        OVC_OK);
+                    part.after = goes_on ? &hits[i] : nullptr;
+                    ASSERT_EQ(
+                        api().intersect(scene.get(), as_abi(rays) + i, count, &hits[i], &part),
+                        OVC_OK);
+                });
+                EXPECT_TRUE(same_bits(hits, expected)) << skips << goes_on;
+                EXPECT_EQ(shadows, expected_shadows) << skips << goes_on;
+            }
+        auto statistics = sized<ovc_statistics>();
+        ASSERT_EQ(api().statistics(scene.get(), &statistics), OVC_OK);
+        EXPECT_EQ(statistics.nearest_rays, 9 * rays.size());
+        EXPECT_EQ(statistics.occlusion_rays, 8 * rays.size());
+        EXPECT_EQ(statistics.single_rays, 0u);
+    }
+}
+
+/// The progress of a call, which has the scene's turn, waits for a small batch of another thread.
+TEST_F(Calls, ASmallBatchDoesNotWaitForALargeOne) {
+    const Soup soup = test::closed_grid(40);
+    const auto scene = committed(soup);
+    const auto rays = test::unpleasant_rays(soup, 18, 100'000);
+    const auto expected = nearest(scene, rays);
+    struct Turn {
+        std::atomic<bool> is_taken{false}, is_answered{false}, waited{false};
+    } turn;
+    auto query = sized<ovc_query>();
+    query.progress_user = &turn;
+    query.progress = [](void* user, double, const char*) {
+        Turn& t = *static_cast<Turn*>(user);
+        t.is_taken = true;
+        for (int i = 0; i < 10'000 && !t.is_answered; ++i)
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        t.waited = t.is_answered.load();
+        return 0;
+    };
+    std::thread large([&] { EXPECT_TRUE(same_bits(nearest(scene, rays, &query), expected)); });
+    while (!turn.is_taken)
+        std::this_thread::yield();
+    const std::vector<Ray> few(rays.begin(), rays.begin() + 64);
+    EXPECT_TRUE(same_bits(nearest(scene, few), {expected.begin(), expected.begin() + 64}));
+    turn.is_answered = true;
+    large.join();
+    EXPECT_TRUE(turn.waited);
+}
+
 TEST_F(Calls, ASingleRayDoesNotSeeWhatItSkips) {
     const Soup soup = test::closed_grid(30);
     const auto scene = committed(soup);
