@@ -13,7 +13,7 @@
 #include "host/terminal/process_cost.h"
 #include "kdtree/build.h"
 #include "kdtree/traverse.h"
-#include "plugin/structure/gathering.h"
+#include "plugin/structure/single_rays.h"
 #include "plugin/two_level/two_level.h"
 #include "tests/abi/abi_scene.h"
 
@@ -87,7 +87,8 @@ Run timed(const std::function<void()>& work) {
 }
 
 std::vector<Contender> contenders(const Job& job, const KdTree& tree, const Soup& soup,
-                                  TwoLevel& two_level, ovc_scene scene, Gathering& gathering) {
+                                  TwoLevel& two_level, ovc_scene scene,
+                                  Gathering<SingleRay>& gathering) {
     const auto one_by_one = [scene](size_t threads) {
         return [scene, threads](const RaySet& set, std::vector<Hit>& hits) {
             return on_threads(threads, set.rays.size(), kTile, [&](size_t first, size_t last) {
@@ -223,7 +224,7 @@ Result<Done> run(const Job& job) {
     if (!abi || test::api().commit(abi.get()) != OVC_OK)
         return Error{test::api().last_error(device.get())};
 
-    Gathering gathering;
+    Gathering<SingleRay> gathering;
     for (const RaySet& set : *sets)
         if (set.query == RayQuery::Nearest)
             measure(job, set,

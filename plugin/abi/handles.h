@@ -76,6 +76,7 @@ inline constexpr uint32_t kTicketMagic = 0x6f766355;
 inline constexpr uint32_t kDestroyed = 0x6f766300;
 
 class RayStream;
+struct RayCall;
 
 /// What reads a mesh's corners: the host's function and its user, how many triangles there are, and
 /// whether corners are doubles. Meshes of the same one show the same corners, as instances do.
@@ -125,7 +126,8 @@ struct ovc_scene_t {
     std::unique_ptr<ovc::Structure> structure;       // set by commit
     ovc::Submissions submissions;
     ovc::SingleRays single_rays{turn, streaming};
-    std::atomic<std::thread::id> streaming; // the thread that is inside stream(), if any
+    ovc::Gathering<const ovc::RayCall> batches; // of threads that ask at once
+    std::atomic<std::thread::id> streaming;     // the thread that is inside stream(), if any
     ovc_stream_t stream;
     std::unique_ptr<ovc_scene_t> next; // of those that are destroyed
 };

@@ -4,9 +4,15 @@
 
 #include "plugin/abi/asked_progress.h"
 #include "plugin/abi/ray_call.h"
+#include "plugin/structure/joined_rays.h"
+
+#include <exception>
 
 namespace ovc {
 namespace {
+
+// Calls of more rays fill a pass of the kernel alone.
+constexpr size_t kMaxJoinedRays = 4096;
 
 /// Answers a batch that is not worth a call of the kernel, beside other calls. Returns false where
 /// it is to be traced like any other.
@@ -22,6 +28,80 @@ bool answer_few(ovc_scene scene, const RayCall& call) {
                         : few.nearest(call.rays, without, call.hits);
 }
 
+/// Whether the call may be one of several in a pass: whoever traces it knows nothing of its thread,
+/// and in certified precision it makes no difference which rays share a pass.
+bool may_join(ovc_scene scene, const RayCall& call) {
+    const ovc_query& query = call.query;
+    return call.rays.size() <= kMaxJoinedRays && !call.max_hits && !query.masks && !query.filter &&
+           !query.progress && !notes_of(query, call.rays.size()).any() &&
+           scene->config.precision == OVC_PRECISION_CERTIFIED &&
+           scene->streaming != std::this_thread::get_id();
+}
+
+/// Answers those of the calls that ask for any hit, or those that ask for the nearest, at once.
+void trace_joined(std::span<const RayCall* const> all, bool any_hit, Structure& structure) {
+    std::vector<const RayCall*> calls;
+    std::vector<size_t> first{0};
+    for (const RayCall* call : all)
+        if (call->any_hit == any_hit) {
+            check_structure(call->name, call->query, structure);
+            calls.push_back(call);
+            first.push_back(first.back() + call->rays.size());
+        }
+    if (calls.empty())
+        return;
+    const auto for_each_call = [&](auto&& body) {
+        parallel_for(calls.size(), 1, [&](size_t from, size_t to) {
+            for (size_t k = from; k < to; ++k)
+                body(*calls[k], first[k]);
+        });
+    };
+    JoinedRays joined(first.back());
+    for_each_call([&](const RayCall& call, size_t at) {
+        const Exclusions without = exclusions_of(call.query, call.rays.size());
+        for (size_t i = 0; i < call.rays.size(); ++i)
+            joined.set(at + i, call.rays[i], without[i]);
+    });
+    std::vector<Hit> hits(any_hit ? 0 : first.back());
+    std::vector<uint8_t> occluded(any_hit ? first.back() : 0);
+    const CallWatch::Scope unwatched(structure.call_watch(), nullptr);
+    check(any_hit ? structure.occluded(joined.rays(), joined.without(), occluded)
+                  : structure.intersect(joined.rays(), joined.without(), hits));
+    for_each_call([&](const RayCall& call, size_t at) {
+        if (any_hit)
+            std::copy_n(&occluded[at], call.rays.size(), call.occluded.begin());
+        else
+            std::copy_n(&hits[at], call.rays.size(), call.hits.begin());
+    });
+}
+
+/// Traces a batch together with those that other threads ask about meanwhile. Returns false where
+/// that has failed, and each is to be traced alone. Throws what the call alone would throw.
+bool trace_with_others(ovc_scene scene, const RayCall& call) {
+    std::exception_ptr failure;
+    const bool traced = scene->batches.answer(call, [&](std::span<const RayCall* const> calls) {
+        try {
+            in_turn(
+                scene, call.name, [] { return true; },
+                [&] {
+                    Structure& structure = committed(scene, call.name);
+                    if (calls.size() == 1)
+                        return trace(call, structure, nullptr);
+                    trace_joined(calls, /* any_hit= */ false, structure);
+                    trace_joined(calls, /* any_hit= */ true, structure);
+                });
+        } catch (...) {
+            if (calls.size() > 1)
+                return false;
+            failure = std::current_exception();
+        }
+        return true;
+    });
+    if (failure)
+        std::rethrow_exception(failure);
+    return traced;
+}
+
 /// Traces a batch, in the scene's turn unless it is small. make_call() checks the arguments, which
 /// needs no turn.
 template <class MakeCall>
@@ -29,7 +109,7 @@ ovc_result batch_of_rays(ovc_scene scene, const char* name, MakeCall&& make_call
     HostFloatMode mode;
     return beside_scene(scene, name, [&] {
         const RayCall call = make_call();
-        if (answer_few(scene, call))
+        if (answer_few(scene, call) || (may_join(scene, call) && trace_with_others(scene, call)))
             return;
         AskedProgress progress(call.query, mode);
         TraceWatch* const watch = call.query.progress ? &progress : nullptr;

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Gathering: collects rays that threads ask about one by one into batches. While one of the threads
-// traces a batch, the next one fills.
+// Gathering: collects what many threads ask at once, rays or batches of them. While one of the
+// threads traces what has come, the next to be traced together come in.
 #pragma once
-
-#include "core/exclusions.h"
 
 #include <cassert>
 #include <condition_variable>
@@ -14,24 +12,16 @@
 
 namespace ovc {
 
-/// One ray, and its answer.
-struct SingleRay {
-    bool any_hit = false;
-    Ray ray;
-    Exclusion without;
-    RaySieve sieve;
-    Hit hit{};             // the answer unless any_hit
-    bool occluded = false; // the answer if any_hit
-};
-
+/// Asked: what one thread asks, and its answer.
+template <class Asked>
 class Gathering {
 public:
     /// Returns true when `asked` is answered, false when its batch could not be traced. Any thread.
-    /// The thread that finds no batch under way calls trace(batch) -> bool for all rays that have
-    /// come until then, so that a ray waits for two batches at most. An exception of trace() counts
-    /// as false.
+    /// The thread that finds no batch under way calls trace(batch) -> bool for all that have come
+    /// until then, so that each waits for two batches at most. An exception of trace() counts as
+    /// false.
     template <class Trace>
-    bool answer(SingleRay& asked, Trace&& trace) {
+    bool answer(Asked& asked, Trace&& trace) {
         Request request{&asked};
         std::unique_lock lock(mutex_);
         waiting_.push_back(&request);
@@ -41,7 +31,7 @@ public:
                 continue;
             }
             std::swap(waiting_, batch_);
-            assert(waiting_.empty() && !batch_.empty()); // this thread's ray is in the batch
+            assert(waiting_.empty() && !batch_.empty()); // what this thread asks is in the batch
             lock.unlock();
             const bool traced = run(trace);
             lock.lock();
@@ -56,29 +46,29 @@ public:
 
 private:
     struct Request {
-        SingleRay* ray;
+        Asked* asked;
         enum { Waits, Answered, Refused } state = Waits;
     };
 
     template <class Trace>
     bool run(Trace&& trace) noexcept {
         try {
-            rays_.clear();
+            asked_.clear();
             for (Request* request : batch_)
-                rays_.push_back(request->ray);
-            return trace(std::span<SingleRay* const>(rays_));
+                asked_.push_back(request->asked);
+            return trace(std::span<Asked* const>(asked_));
         } catch (...) {
-            return false; // each thread then answers its own ray
+            return false; // each thread then answers its own
         }
     }
 
-    /// Guards the members below; batch_ and rays_ belong to the thread that traces.
+    /// Guards the members below; batch_ and asked_ belong to the thread that traces.
     std::mutex mutex_;
     std::condition_variable changed_;
     std::vector<Request*> waiting_;
     bool under_way_ = false;
     std::vector<Request*> batch_;
-    std::vector<SingleRay*> rays_;
+    std::vector<Asked*> asked_;
 };
 
 } // namespace ovc

@@ -7,6 +7,7 @@
 #include "core/system/turn.h"
 #include "plugin/structure/faster_way.h"
 #include "plugin/structure/gathering.h"
+#include "plugin/structure/joined_rays.h"
 #include "plugin/structure/structure.h"
 
 #include <algorithm>
@@ -20,6 +21,16 @@
 #include <thread>
 
 namespace ovc {
+
+/// One ray, and its answer.
+struct SingleRay {
+    bool any_hit = false;
+    Ray ray;
+    Exclusion without;
+    RaySieve sieve;
+    Hit hit{};             // the answer unless any_hit
+    bool occluded = false; // the answer if any_hit
+};
 
 class SingleRays {
     struct Shard;
@@ -152,26 +163,18 @@ private:
     /// Traces the rays of the batch that ask for any hit, or those that ask for the nearest.
     static bool trace(Structure& structure, std::span<SingleRay* const> batch, bool any_hit) {
         std::vector<SingleRay*> asked;
-        std::vector<Ray> rays;
-        std::vector<TriangleId> skip;
-        std::vector<Hit> after;
         for (SingleRay* single : batch)
-            if (single->any_hit == any_hit) {
+            if (single->any_hit == any_hit)
                 asked.push_back(single);
-                rays.push_back(single->ray);
-                skip.push_back(single->without.skip);
-                after.push_back(single->without.after.as_hit());
-            }
         if (asked.empty())
             return true;
+        JoinedRays joined(asked.size());
+        for (size_t i = 0; i < asked.size(); ++i)
+            joined.set(i, asked[i]->ray, asked[i]->without);
         std::vector<Hit> hits(any_hit ? 0 : asked.size());
         std::vector<uint8_t> occluded(any_hit ? asked.size() : 0);
-        if (std::ranges::all_of(after,
-                                [](const Hit& hit) { return HitPlace(hit).is_before_all(); }))
-            after.clear();
-        const Exclusions without(skip, after);
-        if (!(any_hit ? structure.occluded(rays, without, occluded)
-                      : structure.intersect(rays, without, hits)))
+        if (!(any_hit ? structure.occluded(joined.rays(), joined.without(), occluded)
+                      : structure.intersect(joined.rays(), joined.without(), hits)))
             return false;
         for (size_t i = 0; i < asked.size(); ++i)
             if (any_hit)
@@ -185,7 +188,7 @@ private:
     const std::atomic<std::thread::id>& streaming_;
     std::atomic<Structure*> structure_{nullptr};
     FasterWay way_;
-    Gathering gathering_;
+    Gathering<SingleRay> gathering_;
     std::array<Shard, 64> shards_;
 };
 

@@ -2,7 +2,7 @@
 // Gathering: every ray is answered once, whatever the threads do; and the choice of the faster way,
 // under a clock of the test's own.
 #include "plugin/structure/faster_way.h"
-#include "plugin/structure/gathering.h"
+#include "plugin/structure/single_rays.h"
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ namespace {
 
 /// asked(i, ray) from 64 threads, 100 rays each; returns how many were answered.
 template <class Trace>
-size_t answered_of_6400(Gathering& gathering, Trace&& trace) {
+size_t answered_of_6400(Gathering<SingleRay>& gathering, Trace&& trace) {
     std::atomic<size_t> right{0};
     std::vector<std::thread> threads;
     for (int t = 0; t < 64; ++t)
@@ -33,7 +33,7 @@ size_t answered_of_6400(Gathering& gathering, Trace&& trace) {
 }
 
 TEST(Gathering, AnswersEveryRayInOneBatch) {
-    Gathering gathering;
+    Gathering<SingleRay> gathering;
     size_t batches = 0, rays = 0;
     std::atomic<int> at_once{0};
     EXPECT_EQ(answered_of_6400(gathering,
@@ -54,7 +54,7 @@ TEST(Gathering, AnswersEveryRayInOneBatch) {
 }
 
 TEST(Gathering, WhatCannotBeTracedIsRefusedToEachAndNothingIsLost) {
-    Gathering gathering;
+    Gathering<SingleRay> gathering;
     size_t batches = 0;
     const size_t answered = answered_of_6400(gathering, [&](std::span<SingleRay* const> batch) {
         if (++batches % 3 == 0)

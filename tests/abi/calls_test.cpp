@@ -19,6 +19,7 @@ namespace {
 using test::api;
 using test::as_abi;
 using test::sized;
+using Clock = std::chrono::steady_clock;
 
 template <class T>
 bool same_bits(const std::vector<T>& a, const std::vector<T>& b) {
@@ -186,33 +187,112 @@ TEST_F(Calls, SmallBatchesAreAnsweredAsLargeOnesAre) {
     }
 }
 
-/// The progress of a call, which has the scene's turn, waits for a small batch of another thread.
+/// A call that has the scene's turn, and keeps it as long as this lives, or for ten seconds.
+class LongCall {
+public:
+    LongCall(ovc_scene scene, const std::vector<Ray>& rays) {
+        query_.progress_user = this;
+        query_.progress = [](void* user, double, const char*) {
+            LongCall& self = *static_cast<LongCall*>(user);
+            self.has_turn_ = true;
+            while (!self.goes_on_ && Clock::now() < self.end_)
+                std::this_thread::sleep_for(std::chrono::milliseconds(1));
+            return 0;
+        };
+        thread_ = std::thread([this, scene, &rays] {
+            std::vector<ovc_hit> hits(rays.size());
+            EXPECT_EQ(api().intersect(scene, as_abi(rays), rays.size(), hits.data(), &query_),
+                      OVC_OK);
+            is_over_ = true;
+        });
+        while (!has_turn_)
+            std::this_thread::yield();
+    }
+    ~LongCall() {
+        goes_on_ = true;
+        thread_.join();
+    }
+    bool is_over() const { return is_over_; }
+
+private:
+    ovc_query query_ = sized<ovc_query>();
+    const Clock::time_point end_ = Clock::now() + std::chrono::seconds(10);
+    std::atomic<bool> has_turn_{false}, goes_on_{false}, is_over_{false};
+    std::thread thread_;
+};
+
 TEST_F(Calls, ASmallBatchDoesNotWaitForALargeOne) {
     const Soup soup = test::closed_grid(40);
     const auto scene = committed(soup);
     const auto rays = test::unpleasant_rays(soup, 18, 100'000);
     const auto expected = nearest(scene, rays);
-    struct Turn {
-        std::atomic<bool> is_taken{false}, is_answered{false}, waited{false};
-    } turn;
-    auto query = sized<ovc_query>();
-    query.progress_user = &turn;
-    query.progress = [](void* user, double, const char*) {
-        Turn& t = *static_cast<Turn*>(user);
-        t.is_taken = true;
-        for (int i = 0; i < 10'000 && !t.is_answered; ++i)
-            std::this_thread::sleep_for(std::chrono::milliseconds(1));
-        t.waited = t.is_answered.load();
-        return 0;
-    };
-    std::thread large([&] { EXPECT_TRUE(same_bits(nearest(scene, rays, &query), expected)); });
-    while (!turn.is_taken)
-        std::this_thread::yield();
     const std::vector<Ray> few(rays.begin(), rays.begin() + 64);
+    const LongCall large(scene.get(), rays);
     EXPECT_TRUE(same_bits(nearest(scene, few), {expected.begin(), expected.begin() + 64}));
-    turn.is_answered = true;
-    large.join();
-    EXPECT_TRUE(turn.waited);
+    EXPECT_FALSE(large.is_over());
+}
+
+/// Threads ask while another call has the turn, and then all at once.
+TEST_F(Calls, BatchesOfManyThreadsShareTheirPasses) {
+    constexpr size_t kThreads = 16, kRays = 300; // a thread's
+    const Soup soup = test::closed_grid(40);
+    const auto scene = committed(soup);
+    const auto rays = test::unpleasant_rays(soup, 19, 2 * kThreads * kRays);
+    const auto first = nearest(scene, rays);
+    const auto skip = first_hits(first);
+    auto skips = sized<ovc_query>(), goes_on = sized<ovc_query>();
+    skips.skip = skip.data();
+    goes_on.after = first.data();
+    const std::vector<ovc_hit> expected[] = {first, nearest(scene, rays, &skips),
+                                             nearest(scene, rays, &goes_on)};
+    const std::vector<uint8_t> expected_shadows[] = {
+        occlusion(scene, rays), occlusion(scene, rays, &skips), occlusion(scene, rays, &goes_on)};
+    auto before = sized<ovc_statistics>(), after = before;
+    std::atomic<size_t> wrong{0};
+    std::vector<std::thread> threads;
+    ASSERT_EQ(api().statistics(scene.get(), &before), OVC_OK);
+    {
+        LongCall large(scene.get(), rays);
+        for (size_t t = 0; t < kThreads; ++t)
+            threads.emplace_back([&, t] {
+                const size_t kind = t % 3, at = t * kRays;
+                auto query = sized<ovc_query>();
+                query.skip = kind == 1 ? &skip[at] : nullptr;
+                query.after = kind == 2 ? &first[at] : nullptr;
+                std::vector<ovc_hit> hits(kRays);
+                std::vector<uint8_t> shadows(kRays);
+                const bool any_hit = t % 2 == 1;
+                const ovc_result done = any_hit ? api().occluded(scene.get(), as_abi(rays) + at,
+                                                                 kRays, shadows.data(), &query)
+                                                : api().intersect(scene.get(), as_abi(rays) + at,
+                                                                  kRays, hits.data(), &query);
+                wrong += done != OVC_OK;
+                wrong += any_hit
+                             ? std::memcmp(shadows.data(), &expected_shadows[kind][at], kRays) != 0
+                             : std::memcmp(hits.data(), &expected[kind][at],
+                                           kRays * sizeof(ovc_hit)) != 0;
+            });
+        std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    }
+    for (std::thread& thread : threads)
+        thread.join();
+    EXPECT_EQ(wrong, 0u);
+    ASSERT_EQ(api().statistics(scene.get(), &after), OVC_OK);
+    EXPECT_EQ(after.occlusion_rays - before.occlusion_rays, kThreads / 2 * kRays);
+    EXPECT_LT(after.passes - before.passes, kThreads);
+}
+
+TEST_F(Calls, BatchesOfManyThreadsAreRefusedEachWithItsMessage) {
+    const Soup soup = test::closed_grid(40);
+    const auto scene = committed(soup);
+    const auto rays = test::unpleasant_rays(soup, 20, 300);
+    ASSERT_EQ(api().remove_mesh(scene.get(), 0), OVC_OK);
+    on_threads(8, 8, [&](size_t) {
+        std::vector<ovc_hit> hits(rays.size());
+        EXPECT_EQ(api().intersect(scene.get(), as_abi(rays), rays.size(), hits.data(), nullptr),
+                  OVC_ERROR_INVALID_STATE);
+        EXPECT_THAT(error(), testing::HasSubstr("intersect: the scene is not committed yet"));
+    });
 }
 
 TEST_F(Calls, ASingleRayDoesNotSeeWhatItSkips) {
@@ -384,8 +464,6 @@ TEST_F(Calls, ACallStopsWhenItsProgressSaysSo) {
     EXPECT_EQ(told.calls, 2);
     EXPECT_TRUE(same_bits(nearest(scene, rays), expected)) << "the scene is as before";
 }
-
-using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point then) {
     return std::chrono::duration<double>(Clock::now() - then).count();
