@@ -130,10 +130,11 @@ class Tree:
         program = ("import overcast; scene = overcast.Scene(); "
                    "scene.add([[0, 0, 0], [1, 0, 0], [0, 1, 0]]); scene.commit(); "
                    "hit = scene.intersect([0.25, 0.5, 5], [0, 0, -1]); "
-                   "print(hit.t, hit.u, hit.v, overcast.__file__)")
+                   "print(hit.t, hit.u, hit.v, scene.statistics()['nearest_rays'], "
+                   "overcast.__file__)")
         environment = {"PYTHONPATH": str(self.modules), "PYTHONDONTWRITEBYTECODE": "1"}
         self.assertEqual(run(PYTHON, "-c", program, environment=environment),
-                         f"5.0 0.25 0.5 {self.modules}/overcast/__init__.py\n")
+                         f"5.0 0.25 0.5 1 {self.modules}/overcast/__init__.py\n")
         loaded, = loaded_from(PYTHON, "-c", program, environment=environment, name="libovercast")
         self.assertEqual(pathlib.Path(loaded).resolve(),
                          (self.libraries / "libovercast.so.1").resolve())
