@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator
 from typing import BinaryIO
 
 from . import _abi
-from ._library import Error, Result, called_back
+from ._library import Error, Result
 
 
 class Raised:
@@ -23,13 +23,10 @@ class Raised:
 
     def run(self, function: Callable[[], object]) -> int:
         """Calls the function; returns 0, or 1 where it raised and the library must stop."""
-        called_back.now = True
         try:
             function()
         except BaseException as error:  # because no exception may pass through C
             self.error = error
-        finally:
-            called_back.now = False
         return int(self.error is not None)
 
     @contextlib.contextmanager
@@ -50,6 +47,7 @@ class Progress:
 
     def __init__(self) -> None:
         self._told: Callable[[float, str], object] | None = None
+        self._turn = threading.Lock()
         raised = self._raised = Raised()
 
         def tell(_user: int, done: float, stage: bytes) -> int:
@@ -60,24 +58,34 @@ class Progress:
 
     def watch(self, call: Callable[[], object],
               told: Callable[[float, str], object] | None = None) -> None:
-        """Runs a call of the library, which calls told(done, stage); Ctrl-C stops it.
+        """Runs a call of the library, which calls told(done, stage); Ctrl-C stops it, and so does
+        any exception of a signal's handler. One call is watched at a time.
 
         Python delivers Ctrl-C only to the main thread, and not while that is in C. A call from the
         main thread therefore runs on a second thread, while the main thread waits.
         """
-        self._told = told
-        with self._raised.raising():
+        with self._turn, self._raised.raising():
+            self._told = told
             if threading.current_thread() is not threading.main_thread():
                 call()
                 return
             outcome: concurrent.futures.Future[None] = concurrent.futures.Future()
             threading.Thread(target=_run, args=(call, outcome)).start()
             try:
-                outcome.result()
-            except KeyboardInterrupt as interrupt:
-                self._raised.error = interrupt
                 concurrent.futures.wait([outcome])
+            except BaseException as interrupt:
+                self._raised.error = interrupt
+                _wait_in_any_case(outcome)
                 raise
+            outcome.result()
+
+
+def _wait_in_any_case(outcome: concurrent.futures.Future[None]) -> None:
+    """Waits until a call that is to stop has ended, however often Ctrl-C is pressed meanwhile,
+    because it writes to the caller's arrays until then."""
+    while not outcome.done():
+        with contextlib.suppress(BaseException):
+            concurrent.futures.wait([outcome])
 
 
 def _run(call: Callable[[], object], outcome: concurrent.futures.Future[None]) -> None:

@@ -88,9 +88,10 @@ def check(result: int, device: int | None = None) -> None:
         raise Error(sentence or f"the library failed with code {result}", Result(result))
 
 
-called_back = threading.local()
-"""`now` is True on a thread while the library calls a Python function there. Such a function may
-not use the library's handles."""
+def is_called_back() -> bool:
+    """Tells whether the library is calling a Python function on this thread. It then refuses all
+    calls because of that, but this one otherwise because of its arguments."""
+    return bool(api().list_devices(None, 0, None) == Result.INVALID_STATE)
 
 
 class Handle:
@@ -105,28 +106,41 @@ class Handle:
         self._turn = threading.Lock()
         self._end = weakref.finalize(self, _destroy_here, self._process, destroy, value, kept_alive)
 
-    @contextlib.contextmanager
-    def use(self) -> Iterator[int | None]:
-        """A context that gives the handle for a call. One call runs at a time, and close() waits
-        for it. Raises Error after close(), in a fork, and in a function that the library calls."""
+    def refuse_here(self) -> None:
+        """Raises Error in a fork, and in a function that the library calls."""
         if self._process != os.getpid():
             raise Error(f"the {self._what} was opened by process {self._process} "
                         "and does not live on in its fork; "
                         "open one in the process that uses it")
-        if getattr(called_back, "now", False):
+        if is_called_back():
             raise Error(f"a progress function may not use the {self._what}: "
                         "the call that it tells of is still running")
+
+    @contextlib.contextmanager
+    def use(self) -> Iterator[int | None]:
+        """A context that gives the handle for a call. One call runs at a time, and close() waits
+        for it. Raises Error after close(), and as refuse_here() does."""
+        self.refuse_here()
         with self._turn:
             if not self._end.alive:
                 raise Error(f"the {self._what} is closed")
             yield self._value
 
     def close(self) -> None:
+        if self._process != os.getpid():
+            return  # where a thread that the fork lacks may hold the lock
+        self.refuse_here()
         with self._turn:
             self._end()
 
 
 def _destroy_here(process: int, destroy: Callable[[int | None], None], value: int | None,
-                  _kept_alive: tuple[object, ...]) -> None:
-    if process == os.getpid():  # because a fork lacks the library's threads
+                  kept_alive: tuple[object, ...]) -> None:
+    if process != os.getpid():  # because a fork lacks the library's threads
+        return
+    if is_called_back():
+        # Python collects garbage in any function, and the library destroys nothing in one that it
+        # called itself.
+        threading.Thread(target=_destroy_here, args=(process, destroy, value, kept_alive)).start()
+    else:
         destroy(value)

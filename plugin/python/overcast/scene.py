@@ -7,7 +7,7 @@ import ctypes
 import math
 import os
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -65,7 +65,7 @@ class Scene:
         if device is not None and not isinstance(device, Device):
             raise TypeError(f"device must be an overcast.Device, not {type(device).__name__}")
         self._device = device or default_device()
-        self._meshes: dict[int, _abi.ovc_mesh] = {}
+        self._meshes: dict[int, _Form] = {}
         handle = ctypes.c_void_p()
         with self._device._handle.use() as device_handle:
             self._device_handle = device_handle
@@ -75,6 +75,11 @@ class Scene:
     def _call(self, function: str, *arguments: object) -> None:
         with self._handle.use() as scene:
             check(getattr(api(), function)(scene, *arguments), self._device_handle)
+
+    def _watch(self, function: str, *arguments: object,
+               told: Callable[[float, str], object] | None = None) -> None:
+        self._handle.refuse_here()  # before it waits for another call that is watched
+        self._progress.watch(lambda: self._call(function, *arguments), told)
 
     def add(self, vertices: ArrayLike, triangles: ArrayLike | None = None, *,
             transform: ArrayLike | None = None, origin: ArrayLike = (0, 0, 0),
@@ -104,7 +109,8 @@ class Scene:
         self._call("add_mesh", mesh, number)
         if shared:
             self._kept.append(mesh)
-        self._meshes[number.value] = mesh
+        self._meshes[number.value] = _Form(
+            bool(shared), np.dtype("f4" if mesh.positions else "f8"), tuple(mesh.origin))
         return number.value
 
     def add_instance(self, mesh: int, transform: ArrayLike | None = None, *,
@@ -136,12 +142,11 @@ class Scene:
             of the array that the caller has changed, which is where it was.
         """
         number = count("mesh", mesh, 2**32 - 1)
-        before = self._meshes.get(number, _abi.ovc_mesh())
-        shared = before.flags & _abi.MESH_SHARED
-        if not shared:
-            kind = np.float32 if before.positions else np.float64
-            vertices = np.asarray(numbers("vertices", vertices, 3), kind)
-        update = mesh_of(vertices, triangles, tuple(before.origin), None, shared)
+        before = self._meshes.get(number, _Form())
+        if not before.shared:
+            vertices = np.asarray(numbers("vertices", vertices, 3), before.kind)
+        update = mesh_of(vertices, triangles, before.origin, None,
+                         _abi.MESH_SHARED * before.shared)
         self._call("update_mesh", number, update, count("first", first, 2**64 - 1))
 
     def move(self, mesh: int, transform: ArrayLike | None = None) -> None:
@@ -153,7 +158,9 @@ class Scene:
     def remove(self, mesh: int) -> None:
         """Removes a mesh or an instance. Numbers of others stay; instances of a removed mesh stay
         too. commit() then brings the scene up to date; until then it takes no rays."""
-        self._call("remove_mesh", count("mesh", mesh, 2**32 - 1))
+        number = count("mesh", mesh, 2**32 - 1)
+        self._call("remove_mesh", number)
+        self._meshes.pop(number, None)
 
     def commit(self, progress: Callable[[float, str], object] | None = None) -> None:
         """Builds the scene, or brings it up to date with what has changed since the last commit.
@@ -163,7 +170,7 @@ class Scene:
         to 1; it may not use the scene. An exception from it ends the commit and is raised here; so
         does Ctrl-C. Afterwards the scene may be committed again.
         """
-        self._progress.watch(lambda: self._call("commit"), progress)
+        self._watch("commit", told=progress)
 
     def intersect(self, origins: ArrayLike, directions: ArrayLike, t_min: ArrayLike = 0.0,
                   t_max: ArrayLike = math.inf, *, out: Hits | None = None,
@@ -189,7 +196,7 @@ class Scene:
             raise ValueError(f"out must be Hits of the rays' shape {rays.shape}, not {out!r}")
         if not answers.flags.carray:
             raise ValueError("out must be Hits whose records are contiguous and writeable")
-        self._trace("intersect", rays, limits, answers.ctypes.data)
+        self._trace("intersect", rays, limits, answers)
         return hits
 
     def occluded(self, origins: ArrayLike, directions: ArrayLike, t_min: ArrayLike = 0.0,
@@ -202,7 +209,7 @@ class Scene:
         """occluded() of rays in records (see overcast.rays): nothing is copied."""
         rays = as_rays(rays)
         answers = np.empty(rays.shape, np.bool_)
-        self._trace("occluded", rays, limits, answers.ctypes.data)
+        self._trace("occluded", rays, limits, answers)
         return answers
 
     def all_hits(self, origins: ArrayLike, directions: ArrayLike, t_min: ArrayLike = 0.0,
@@ -227,8 +234,7 @@ class Scene:
 
         def find(most: int) -> Hits:
             hits = Hits(np.empty((*rays.shape, most), HIT))
-            self._trace("all_hits", rays, limits, most, hits.records.ctypes.data,
-                        counts.ctypes.data)
+            self._trace("all_hits", rays, limits, most, hits.records, counts)
             return hits
         if max_hits is not None:
             return find(count("max_hits", max_hits)), counts
@@ -237,12 +243,14 @@ class Scene:
         return (hits[..., :most] if most <= _FIRST_HITS else find(most)), counts
 
     def _trace(self, function: str, rays: NDArray[np.void], limits: Limits,
-               *answers: int) -> None:
+               *answers: int | NDArray[Any]) -> None:
         query = Query(rays, **limits)
 
-        def call() -> None:
+        def call() -> None:  # It keeps the arrays alive that the library reads and writes.
+            places = (answer if isinstance(answer, int) else answer.ctypes.data
+                      for answer in answers)
             with query.raising():
-                self._call(function, rays.ctypes.data, rays.size, *answers, query.struct)
+                self._call(function, rays.ctypes.data, rays.size, *places, query.struct)
         if rays.size < _WORTH_WATCHING:
             call()
         else:
@@ -255,7 +263,7 @@ class Scene:
         leaves, bytes, the smallest budget that works, whether it fits. ovc_plan of the C header
         says what each number is."""
         plan = _abi.ovc_plan()
-        self._progress.watch(lambda: self._call("plan", plan))
+        self._watch("plan", plan)
         return _as_dict(plan)
 
     def statistics(self) -> dict[str, int | float]:
@@ -301,6 +309,14 @@ it would take noticeably long."""
 
 _FIRST_HITS = 8
 """For all_hits() without max_hits, which asks again where a ray has more."""
+
+
+class _Form(NamedTuple):
+    """What update() must know of a mesh: how add() took it."""
+
+    shared: bool = False
+    kind: np.dtype[Any] = np.dtype("f8")
+    origin: tuple[float, ...] = (0.0, 0.0, 0.0)
 
 
 def _as_dict(struct: ctypes.Structure) -> dict[str, int | float]:
