@@ -5,9 +5,11 @@ from __future__ import annotations
 
 import ctypes
 import math
+import mmap
 import os
+import secrets
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, BinaryIO, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -59,7 +61,7 @@ class Scene:
             kernel=choice("kernel", kernel, ("auto", "fragment", "compute")),
             progress=self._progress.function)
         if saved is not None:
-            mapped = np.memmap(saved, mode="r")
+            mapped = _mapped(saved)
             self._kept.append(mapped)
             config.saved, config.saved_bytes = mapped.ctypes.data, mapped.size
         if device is not None and not isinstance(device, Device):
@@ -275,17 +277,25 @@ class Scene:
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Writes what commit() has built to a file, for Scene(saved=path) with the same meshes.
-        Replaces an existing file only when all is written."""
-        unfinished = f"{os.fspath(path)}.unfinished"
+        Replaces an existing file only when all is written; a device or a pipe is written to."""
+        target = os.path.realpath(os.fsdecode(path))  # a link stays one
+        if os.path.exists(target) and not os.path.isfile(target):
+            with open(target, "wb") as file:
+                self._save_into(file)
+            return
+        unfinished = os.path.join(os.path.dirname(target), f".{secrets.token_hex(8)}.unfinished")
         try:
-            with open(unfinished, "wb") as file:
-                writer = Writer(file)
-                with writer.raising():
-                    self._call("save", writer.function, None)
-            os.replace(unfinished, path)
+            with open(unfinished, "xb") as file:
+                self._save_into(file)
+            os.replace(unfinished, target)
         finally:
             if os.path.exists(unfinished):
                 os.remove(unfinished)
+
+    def _save_into(self, file: BinaryIO) -> None:
+        writer = Writer(file)
+        with writer.raising():
+            self._call("save", writer.function, None)
 
     def purge(self) -> None:
         """Gives the GPU memory back, all of it, until rays are traced again."""
@@ -317,6 +327,14 @@ class _Form(NamedTuple):
     shared: bool = False
     kind: np.dtype[Any] = np.dtype("f8")
     origin: tuple[float, ...] = (0.0, 0.0, 0.0)
+
+
+def _mapped(path: str | os.PathLike[str]) -> NDArray[np.uint8]:
+    """Returns the bytes of a file. An empty one, which cannot be mapped, has a zero: to the library
+    that is damage like any other."""
+    if os.path.getsize(path):
+        return np.memmap(path, mode="r")
+    return np.frombuffer(mmap.mmap(-1, 1), np.uint8)
 
 
 def _as_dict(struct: ctypes.Structure) -> dict[str, int | float]:
