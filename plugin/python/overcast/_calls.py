@@ -40,6 +40,8 @@ class Raised:
             if stopped.code != Result.CANCELLED or self.error is None:
                 raise
             raise self.error from None
+        finally:
+            self.error = None  # because its frames refer to the scene
 
 
 class Progress:
@@ -66,18 +68,24 @@ class Progress:
         """
         with self._turn, self._raised.raising():
             self._told = told
-            if threading.current_thread() is not threading.main_thread():
-                call()
-                return
-            outcome: concurrent.futures.Future[None] = concurrent.futures.Future()
-            threading.Thread(target=_run, args=(call, outcome)).start()
             try:
-                concurrent.futures.wait([outcome])
-            except BaseException as interrupt:
-                self._raised.error = interrupt
-                _wait_in_any_case(outcome)
-                raise
-            outcome.result()
+                if threading.current_thread() is threading.main_thread():
+                    self._run_beside(call)
+                else:
+                    call()
+            finally:
+                self._told = None  # The scene keeps this object, and the function may keep it.
+
+    def _run_beside(self, call: Callable[[], object]) -> None:
+        outcome: concurrent.futures.Future[None] = concurrent.futures.Future()
+        threading.Thread(target=_run, args=(call, outcome)).start()
+        try:
+            concurrent.futures.wait([outcome])
+        except BaseException as interrupt:
+            self._raised.error = interrupt
+            _wait_in_any_case(outcome)
+            raise
+        outcome.result()
 
 
 def _wait_in_any_case(outcome: concurrent.futures.Future[None]) -> None:

@@ -144,6 +144,32 @@ class Arrays(unittest.TestCase):
         self.assertIsNone(kept())
 
 
+class Scenes(unittest.TestCase):
+    """A scene ends when nobody refers to it any more but what it keeps itself."""
+
+    def ends(self, progress):
+        class Renderer:
+            def __init__(self):
+                self.scene = overcast.Scene()
+                self.scene.add(TRIANGLE)
+                self.scene.commit(lambda done, stage: progress(self))
+        renderer = None
+        try:
+            renderer = Renderer()
+        except ZeroDivisionError as error:
+            renderer = error.__traceback__.tb_next.tb_frame.f_locals["self"]
+        scene = weakref.ref(renderer.scene)
+        del renderer
+        gc.collect()
+        self.assertIsNone(scene())
+
+    def test_whose_progress_function_refers_to_it(self):
+        self.ends(lambda renderer: None)
+
+    def test_whose_progress_function_raised(self):
+        self.ends(lambda renderer: 1 / 0)
+
+
 class Forks(unittest.TestCase):
     def test_closing_in_a_fork_waits_for_no_call_of_the_parent(self):
         scene = committed()
