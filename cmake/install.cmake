@@ -26,7 +26,7 @@ install(EXPORT Overcast NAMESPACE Overcast:: FILE OvercastTargets.cmake
 configure_package_config_file(
     cmake/OvercastConfig.cmake.in ${PROJECT_BINARY_DIR}/OvercastConfig.cmake
     INSTALL_DESTINATION ${package_dir} PATH_VARS CMAKE_INSTALL_LIBDIR
-    NO_SET_AND_CHECK_MACRO NO_CHECK_REQUIRED_COMPONENTS_MACRO)
+    NO_SET_AND_CHECK_MACRO)
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/OvercastConfigVersion.cmake
     COMPATIBILITY SameMajorVersion)
 install(
