@@ -78,12 +78,13 @@ class Progress:
 
     def _run_beside(self, call: Callable[[], object]) -> None:
         outcome: concurrent.futures.Future[None] = concurrent.futures.Future()
-        threading.Thread(target=_run, args=(call, outcome)).start()
         try:
+            threading.Thread(target=_run, args=(call, outcome)).start()
             concurrent.futures.wait([outcome])
         except BaseException as interrupt:
             self._raised.error = interrupt
-            _wait_in_any_case(outcome)
+            if not outcome.cancel():  # which it does where the call has not begun
+                _wait_in_any_case(outcome)
             raise
         outcome.result()
 
@@ -97,6 +98,8 @@ def _wait_in_any_case(outcome: concurrent.futures.Future[None]) -> None:
 
 
 def _run(call: Callable[[], object], outcome: concurrent.futures.Future[None]) -> None:
+    if not outcome.set_running_or_notify_cancel():
+        return
     try:
         call()
         outcome.set_result(None)
