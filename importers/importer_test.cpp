@@ -197,11 +197,40 @@ TEST(Importer, DamagedCompressionIsSaid) {
                   ": the compressed data is damaged: incorrect checksum");
 }
 
+/// Returns a zip archive of one file that is not compressed.
+std::string zip_of(const std::string& name, const std::string& contents) {
+    const auto number = [](uLong n, int bytes) {
+        std::string digits;
+        for (int i = 0; i < bytes; ++i)
+            digits += char(n >> (8 * i));
+        return digits;
+    };
+    const uLong sum =
+        crc32(0, reinterpret_cast<const Bytef*>(contents.data()), uInt(contents.size()));
+    const std::string about = number(10, 2) + number(0, 8) + number(sum, 4) +
+                              number(contents.size(), 4) + number(contents.size(), 4) +
+                              number(name.size(), 2);
+    const std::string file = "PK\3\4" + about + number(0, 2) + name + contents;
+    const std::string entry = "PK\1\2" + number(10, 2) + about + number(0, 16) + name;
+    return file + entry + "PK\5\6" + number(0, 4) + number(1, 2) + number(1, 2) +
+           number(entry.size(), 4) + number(file.size(), 4) + number(0, 2);
+}
+
 TEST(Importer, AssimpsFormatsSurviveDamage) {
     const TestFolder folder;
     folder.write("a.off", kOff);
     folder.write("rubbish.stl", "solid\nfacet");
     folder.write("rubbish.glb", "glTF");
+    // Assimp's own way to cut polygons ends the process here.
+    folder.write("no corners.off", "OFF\n4 2 0\n0 0 0\n1 0 2 3-13 0 2 3-1");
+    EXPECT_EQ(folder.failure("no corners.off"), "0 triangles");
+    // Assimp asserts that the part is there.
+    const char* const part = "<Relationships><Relationship Id=\"r\" Target=\"/3D/none.model\" Type="
+                             "\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/>"
+                             "</Relationships>";
+    folder.write("no part.3mf", zip_of("_rels/.rels", part));
+    EXPECT_TRUE(folder.failure("no part.3mf").starts_with("no part.3mf: Assimp found: "))
+        << folder.failure("no part.3mf");
     for (const char* name : {"rubbish.stl", "rubbish.glb"}) {
         const std::string message = folder.failure(name);
         EXPECT_TRUE(message.starts_with(std::string(name) + ": ") || message == "0 triangles")

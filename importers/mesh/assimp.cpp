@@ -5,6 +5,7 @@
 #include "importers/file/source.h"
 #include "importers/file/text.h"
 #include "importers/mesh/assimp_look.h"
+#include "importers/mesh/assimp_meshes.h"
 #include "importers/mesh/gltf.h"
 #include "importers/pbrt/look/exposure.h"
 #include "importers/readers.h"
@@ -12,7 +13,6 @@
 #include <assimp/DefaultIOSystem.h>
 #include <assimp/Importer.hpp>
 #include <assimp/MemoryIOWrapper.h>
-#include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <fmt/format.h>
 
@@ -20,82 +20,24 @@
 #include <cmath>
 #include <exception>
 #include <numbers>
+#include <stdexcept>
+
+namespace Assimp {
+
+/// Assimp calls its own function of this name where a file leads it astray, and that ends the
+/// process. The loader takes this one in its place, and Assimp makes an error of what it throws.
+/// Where Assimp was linked with -Bsymbolic, it keeps its own.
+[[gnu::visibility("default")]] void aiAssertViolation(const char*, const char*, int);
+
+void aiAssertViolation(const char* expression, const char*, int) {
+    throw std::logic_error(fmt::format("it expected {}", expression));
+}
+
+} // namespace Assimp
 
 namespace ovc {
 
 namespace {
-
-// JoinIdenticalVertices is not among them, because it merges by distance. These steps run after
-// reading, because they throw away things that the warnings tell of.
-constexpr unsigned kSteps = aiProcess_Triangulate | aiProcess_PreTransformVertices;
-
-vec3 from(const aiVector3D& v) {
-    return {v.x, v.y, v.z};
-}
-
-bool is_triangle(const aiFace& face, const aiMesh& mesh) {
-    return face.mNumIndices == 3 && face.mIndices[0] < mesh.mNumVertices &&
-           face.mIndices[1] < mesh.mNumVertices && face.mIndices[2] < mesh.mNumVertices;
-}
-
-/// Returns one normal per corner; none if one is missing or not finite, or if all triangles are
-/// flat, because then they say nothing new.
-std::vector<vec3> normals_from(const aiMesh& mesh) {
-    std::vector<vec3> normals;
-    bool smooth = false;
-    for (unsigned f = 0; mesh.HasNormals() && f < mesh.mNumFaces; ++f) {
-        if (!is_triangle(mesh.mFaces[f], mesh))
-            continue;
-        for (int i = 0; i < 3; ++i) {
-            const vec3 normal = from(mesh.mNormals[mesh.mFaces[f].mIndices[i]]);
-            const float length = glm::length(normal);
-            if (!(length > 0) || !std::isfinite(length))
-                return {};
-            normals.push_back(normal / length);
-        }
-        smooth = smooth || normals.end()[-1] != normals.end()[-2] ||
-                 normals.end()[-2] != normals.end()[-3];
-    }
-    return smooth ? normals : std::vector<vec3>();
-}
-
-/// Returns the texture coordinates of the set, one per corner; none if the mesh has no such set.
-std::vector<vec2> uv_from(const aiMesh& mesh, uint32_t set) {
-    std::vector<vec2> uv;
-    for (unsigned f = 0; mesh.HasTextureCoords(set) && f < mesh.mNumFaces; ++f) {
-        if (!is_triangle(mesh.mFaces[f], mesh))
-            continue;
-        for (int i = 0; i < 3; ++i) {
-            const aiVector3D& at = mesh.mTextureCoords[set][mesh.mFaces[f].mIndices[i]];
-            uv.emplace_back(std::isfinite(at.x) ? at.x : 0, std::isfinite(at.y) ? at.y : 0);
-        }
-    }
-    return uv;
-}
-
-void add_mesh(Scene& scene, const aiMesh& mesh, const AssimpMaterial& of_material, bool wants_uv) {
-    std::vector<vec3> corners;
-    corners.reserve(size_t(mesh.mNumFaces) * 3);
-    for (unsigned f = 0; f < mesh.mNumFaces; ++f)
-        if (is_triangle(mesh.mFaces[f], mesh))
-            for (int i = 0; i < 3; ++i)
-                corners.push_back(from(mesh.mVertices[mesh.mFaces[f].mIndices[i]]));
-    if (corners.empty())
-        return;
-    const uint32_t material =
-        mesh.mMaterialIndex < scene.materials.size() ? mesh.mMaterialIndex : 0;
-    const uint64_t count = corners.size();
-    scene.add_mesh(mesh.mName.length > 0 ? mesh.mName.C_Str() : scene.name, material,
-                   Chunk::owning(dvec3(0), std::move(corners)), normals_from(mesh));
-    MeshInfo& info = scene.meshes.back();
-    info.normals_left_out = mesh.HasNormals() && info.normals.empty() ? count : 0;
-    if (wants_uv)
-        info.uv = uv_from(mesh, of_material.uv_set);
-    if (info.uv.empty())
-        info.texture_coordinates_left_out = mesh.HasTextureCoords(0) ? count : 0;
-    else
-        info.cutout = of_material.cutout;
-}
 
 dvec3 through(const aiMatrix4x4& place, const aiVector3D& point) {
     const aiVector3D moved = place * point;
@@ -105,24 +47,24 @@ dvec3 through(const aiMatrix4x4& place, const aiVector3D& point) {
 /// Returns the angle along the shorter side of the picture. For glTF, Assimp 5 tells the upright
 /// angle times the shape; for other formats the whole angle across, whatever its header says.
 double angle_of_view(const aiCamera& source, bool is_gltf) {
-    const double shape = source.mAspect > 1 ? source.mAspect : 1;
-    if (is_gltf)
-        return source.mHorizontalFOV / shape;
-    return 2 * std::atan(std::tan(double(source.mHorizontalFOV) / 2) / shape);
+    const double shape = source.mAspect > 0 ? source.mAspect : 1;
+    const double known = is_gltf ? source.mHorizontalFOV / shape : source.mHorizontalFOV;
+    const double by_height = is_gltf ? std::min(shape, 1.0) : 1 / std::max(shape, 1.0);
+    return 2 * std::atan(std::tan(known / 2) * by_height);
 }
 
 /// Places the camera where its node stands. Returns nothing for an orthographic camera, whose
-/// extent not all formats tell, and for one that sees nothing.
+/// extent not all formats tell, and for one that no node has or that sees nothing.
 std::optional<Camera> camera_from(const aiCamera& source, const aiNode& root, bool is_gltf) {
-    aiMatrix4x4 place;
-    for (const aiNode* node = root.FindNode(source.mName); node; node = node->mParent)
-        place = node->mTransformation * place;
+    const std::optional<aiMatrix4x4> place = place_of(root, source.mName);
+    if (!place)
+        return std::nullopt;
     // For glTF, Assimp 5 gives the node's own translation once more.
     const aiVector3D at = is_gltf ? aiVector3D() : source.mPosition;
     Camera camera;
-    camera.eye = through(place, at);
-    camera.target = through(place, at + source.mLookAt);
-    camera.up = through(place, at + source.mUp) - camera.eye;
+    camera.eye = through(*place, at);
+    camera.target = through(*place, at + source.mLookAt);
+    camera.up = through(*place, at + source.mUp) - camera.eye;
     camera.fov_degrees = angle_of_view(source, is_gltf) * 180 / std::numbers::pi;
     const bool sees = camera.fov_degrees > 0 && camera.fov_degrees < 180 && is_finite(camera.eye) &&
                       is_finite(camera.target) && camera.eye != camera.target &&
@@ -287,7 +229,6 @@ Result<Scene> read_assimp(const std::filesystem::path& path, const ImportOptions
         materials = add_materials(*found, path, scene, textures);
         const uint64_t lights = add_lights(*found, scene);
         left_out = left_out_of(*found, scene.camera.has_value(), std::move(textures), lights);
-        found = importer.ApplyPostProcessing(kSteps);
     }
     if (!found || source->is_damaged())
         return source->error(fmt::format("Assimp found: {}", importer.GetErrorString()));
@@ -298,14 +239,8 @@ Result<Scene> read_assimp(const std::filesystem::path& path, const ImportOptions
         scene.materials.emplace_back();
         materials.emplace_back();
     }
-    const std::vector<bool> on_uv = materials_on_uv(scene);
-    for (unsigned m = 0; m < found->mNumMeshes; ++m) {
-        const unsigned named = found->mMeshes[m]->mMaterialIndex;
-        const size_t material = named < materials.size() ? named : 0;
-        if (!materials[material].is_cut_away)
-            add_mesh(scene, *found->mMeshes[m], materials[material],
-                     on_uv[material] || materials[material].cutout != kNone);
-    }
+    if (const auto added = add_meshes(*found, materials, materials_on_uv(scene), scene); !added)
+        return source->error(added.error().message);
     if (!scene.lights.empty()) {
         scene.exposure = pbrt::fitting_exposure(scene);
         pbrt::expose(scene, scene.exposure);

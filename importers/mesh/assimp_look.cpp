@@ -282,21 +282,16 @@ AssimpMaterial Looks::add(const aiMaterial& source) {
     return result;
 }
 
-/// Returns the transform of the node of that name to the world.
-aiMatrix4x4 place_of(const aiNode& root, const aiString& name) {
-    aiMatrix4x4 place;
-    for (const aiNode* node = root.FindNode(name); node; node = node->mParent)
-        place = node->mTransformation * place;
-    return place;
-}
-
 dvec3 vector_of(const aiVector3D& v) {
     return {v.x, v.y, v.z};
 }
 
-/// Returns nothing for a light of an area, and for one that cannot be used.
+/// Returns nothing for a light of an area, and for one that no node has or that cannot be used.
 std::optional<Light> light_from(const aiLight& source, const aiNode& root) {
-    const aiMatrix4x4 place = place_of(root, source.mName);
+    const std::optional<aiMatrix4x4> placed = place_of(root, source.mName);
+    if (!placed)
+        return std::nullopt;
+    const aiMatrix4x4& place = *placed;
     Light light;
     light.position = vector_of(place * source.mPosition);
     const aiVector3D ahead =
@@ -326,6 +321,16 @@ std::optional<Light> light_from(const aiLight& source, const aiNode& root) {
 }
 
 } // namespace
+
+std::optional<aiMatrix4x4> place_of(const aiNode& root, const aiString& name) {
+    const aiNode* node = root.FindNode(name);
+    if (!node)
+        return std::nullopt;
+    aiMatrix4x4 place;
+    for (; node; node = node->mParent)
+        place = node->mTransformation * place;
+    return place;
+}
 
 std::vector<AssimpMaterial> add_materials(const aiScene& found, const std::filesystem::path& file,
                                           Scene& scene, std::vector<std::string>& left_out) {

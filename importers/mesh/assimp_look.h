@@ -7,6 +7,7 @@
 #include <assimp/scene.h>
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,10 @@ struct AssimpMaterial {
 /// pictures that are not shown.
 std::vector<AssimpMaterial> add_materials(const aiScene& found, const std::filesystem::path& file,
                                           Scene& scene, std::vector<std::string>& left_out);
+
+/// Returns the transform to the world of the node that has a camera or a light of this name;
+/// nothing if none has it, so that it is in no part of the scene.
+std::optional<aiMatrix4x4> place_of(const aiNode& root, const aiString& name);
 
 /// Adds lights where their nodes stand, in glTF's units. Returns how many it leaves out.
 uint64_t add_lights(const aiScene& found, Scene& scene);

@@ -17,6 +17,7 @@
 #include <set>
 #include <span>
 #include <string_view>
+#include <utility>
 
 namespace ovc {
 
@@ -262,6 +263,36 @@ std::optional<std::string> uneven_vertex(const Json& gltf) {
     return std::nullopt;
 }
 
+/// Returns the value at `path`, or null if there is none.
+Json* value_at(Json& json, const Json::json_pointer& path) {
+    return json.contains(path) ? &json[path] : nullptr;
+}
+
+/// Gives each node a name of its own, and a camera and a light of its own where others have the
+/// same ones: Assimp keeps one place for each of them, which it finds by the node's name.
+void tell_nodes_apart(Json& gltf) {
+    const std::pair<Json::json_pointer, Json::json_pointer> kShared[] = {
+        {Json::json_pointer("/camera"), Json::json_pointer("/cameras")},
+        {Json::json_pointer("/extensions/KHR_lights_punctual/light"),
+         Json::json_pointer("/extensions/KHR_lights_punctual/lights")}};
+    Json* const nodes = value_at(gltf, Json::json_pointer("/nodes"));
+    for (size_t n = 0; nodes && n < nodes->size(); ++n)
+        if ((*nodes)[n].is_object())
+            (*nodes)[n]["name"] = fmt::format("nodes[{}]", n);
+    for (const auto& [of_node, of_file] : kShared) {
+        Json* const things = value_at(gltf, of_file);
+        std::set<uint64_t> taken;
+        for (size_t n = 0; things && things->is_array() && nodes && n < nodes->size(); ++n) {
+            Json* const index = value_at((*nodes)[n], of_node);
+            if (!index || !index->is_number_unsigned() || *index >= things->size() ||
+                taken.insert(index->get<uint64_t>()).second)
+                continue;
+            things->push_back((*things)[index->get<size_t>()]);
+            *index = things->size() - 1;
+        }
+    }
+}
+
 /// Returns the version that the file is of; nothing if it does not say.
 std::string version_of(const Json& gltf) {
     const Json version = gltf.value(Json::json_pointer("/asset/version"), Json());
@@ -304,6 +335,7 @@ Result<GltfFile> read_gltf_file(Source& source) {
     if (fault)
         return source.error(*fault);
     file.left_out = omissions.take_out();
+    tell_nodes_apart(*gltf);
     std::string json = gltf->dump();
     file.bytes = file.is_binary ? with_json(all, at, std::move(json)) : std::move(json);
     return file;

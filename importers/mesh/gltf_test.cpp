@@ -246,6 +246,40 @@ TEST(Gltf, WhatIsDeformedIsShownAtRestAndSaid) {
                         "1 set of morph weights left out: meshes are shown in their rest form")));
 }
 
+/// Assimp keeps one place for a light, by the name of its node.
+TEST(Gltf, NodesOfOneNameMayShareALight) {
+    const std::string light =
+        "\"name\":\"x\",\"extensions\":{\"KHR_lights_punctual\":{\"light\":0}}}";
+    const ReadGltf read = read_gltf(
+        gltf_of("{}",
+                ",\"extensions\":{\"KHR_lights_punctual\":{\"lights\":[{\"type\":\"point\"}]}},"
+                "\"cameras\":[{\"type\":\"perspective\",\"perspective\":{\"yfov\":1,"
+                "\"aspectRatio\":0.5,\"znear\":1}}]",
+                "{\"mesh\":0,\"name\":\"x\"},{\"translation\":[0,0,2]," + light +
+                    ",{\"translation\":[0,0,3]," + light +
+                    ",{\"translation\":[0,0,5],\"name\":\"x\",\"camera\":0}",
+                "0,1,2,3"));
+    ASSERT_EQ(read.scene.lights.size(), 2u);
+    EXPECT_EQ(read.scene.lights[0].position, dvec3(0, 0, 2));
+    EXPECT_EQ(read.scene.lights[1].position, dvec3(0, 0, 3));
+    ASSERT_TRUE(read.scene.camera);
+    EXPECT_EQ(read.scene.camera->eye, dvec3(0, 0, 5));
+    // The shorter side of a picture that is twice as high as wide.
+    EXPECT_NEAR(read.scene.camera->fov_degrees,
+                2 * std::atan(std::tan(0.5) / 2) * 180 / std::numbers::pi, 1e-4);
+    EXPECT_TRUE(read.warnings.empty());
+}
+
+TEST(Gltf, AMirroredMeshKeepsItsFront) {
+    const ReadGltf read = read_gltf(gltf_of("{}", "",
+                                            "{\"children\":[1],\"translation\":[5,0,0]},"
+                                            "{\"mesh\":0,\"scale\":[-1,1,1]}"));
+    const Triangle t = read.scene.soup.chunks.at(0).triangle(0);
+    EXPECT_EQ(t[0], dvec3(5, 0, 0));
+    EXPECT_EQ(t[1], dvec3(5, 1, 0));
+    EXPECT_EQ(t[2], dvec3(4, 0, 0));
+}
+
 TEST(Gltf, DataThatLiesElsewhereIsAnError) {
     const std::string sound = gltf_of("{}");
     EXPECT_EQ(failure_of(sound), "1 triangles");
