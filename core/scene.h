@@ -280,8 +280,8 @@ struct Light {
     std::optional<ThrownPicture> thrown;
 };
 
-/// The image is a window at the end of `direction` from the eye, `right` wide and `up` high
-/// whatever the image's size, and of any handedness. With `orthographic`, rays begin in the
+/// The image is a window at the end of `direction` from the eye, `right` wide and `up` high, and of
+/// any handedness. With `orthographic`, rays begin in the
 /// window's plane through the eye, and all go along `direction`.
 struct ImageWindow {
     /// How the picture is bent, as by POV-Ray's cameras of these names; Flat is not bent. All
@@ -306,6 +306,10 @@ struct ImageWindow {
     Bend bend = Bend::Flat;
     double angle = 90; // degrees, across the picture
     double vertical_angle = 90;
+    /// The width by the height of the picture that `right` and `up` are for. In a picture of
+    /// another shape the shorter side shows what it does in that one, and the longer side more or
+    /// less of what there is, so that nothing is stretched. 0: all pictures show the window.
+    double shape = 0;
 };
 
 /// A thin lens, which is sharp at one depth. Rays begin on the ellipse around the eye whose half

@@ -144,7 +144,7 @@ void each_field(auto& io, Some<Light> auto& l) {
 }
 
 void each_field(auto& io, Some<ImageWindow> auto& w) {
-    io(w.direction, w.right, w.up, w.orthographic, w.bend, w.angle, w.vertical_angle);
+    io(w.direction, w.right, w.up, w.orthographic, w.bend, w.angle, w.vertical_angle, w.shape);
 }
 
 void each_field(auto& io, Some<Camera> auto& c) {

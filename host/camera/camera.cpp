@@ -62,6 +62,14 @@ Result<Done> check_camera(const Camera& camera) {
     return Done{};
 }
 
+/// Returns how much of the window's width and height a picture of this shape shows.
+static dvec2 share_of_window(const ImageWindow& window, double shape) {
+    if (!(window.shape > 0))
+        return dvec2(1);
+    const auto sides = [](double s) { return dvec2(std::max(s, 1.0), std::max(1 / s, 1.0)); };
+    return sides(shape) / sides(window.shape);
+}
+
 Pinhole::Pinhole(const Camera& camera, const PicturePart& part, const Scene* scene)
     : part_(part), scene_(scene), nearest_(camera.nearest), eye_(camera.eye) {
     assert(part.size.width > 0 && part.left + part.size.width <= part.picture.width);
@@ -79,8 +87,9 @@ Pinhole::Pinhole(const Camera& camera, const PicturePart& part, const Scene* sce
     lens_ = camera.lens;
     if (camera.window) {
         middle_ = camera.window->direction;
-        to_right_ = 0.5 * camera.window->right;
-        to_top_ = 0.5 * camera.window->up;
+        const dvec2 share = share_of_window(*camera.window, double(width) / double(height));
+        to_right_ = 0.5 * share.x * camera.window->right;
+        to_top_ = 0.5 * share.y * camera.window->up;
         orthographic_ = camera.window->orthographic;
         if (camera.window->bend != ImageWindow::Bend::Flat)
             bent_ = *camera.window;

@@ -57,6 +57,20 @@ TEST(Pinhole, SeesThroughTheWindowThatTheCameraNames) {
     EXPECT_LT(glm::length(pinhole.ray(3, 1).dir - dvec3(-0.6, -0.25, 1.875)), 1e-15);
 }
 
+TEST(Pinhole, AWindowForAShapeIsNotStretched) {
+    Camera camera;
+    camera.window = ImageWindow{{0, 0, 1}, {4, 0, 0}, {0, 2, 0}};
+    camera.window->shape = 2;
+    const auto corner = [&](uint32_t width, uint32_t height) {
+        const dvec3 first = Pinhole(camera, width, height).ray(0, 0).dir;
+        return dvec2(first.x, first.y) / dvec2(1 - 1.0 / width, 1 - 1.0 / height);
+    };
+    EXPECT_LT(glm::length(corner(200, 100) - dvec2(-2, 1)), 1e-12);
+    EXPECT_LT(glm::length(corner(400, 100) - dvec2(-4, 1)), 1e-12);
+    EXPECT_LT(glm::length(corner(100, 100) - dvec2(-1, 1)), 1e-12);
+    EXPECT_LT(glm::length(corner(100, 200) - dvec2(-1, 2)), 1e-12);
+}
+
 TEST(Pinhole, AnOrthographicWindowSendsParallelRays) {
     const Pinhole pinhole(windowed(true), 4, 2);
     const Ray first = pinhole.ray(0, 0), last = pinhole.ray(3, 1);

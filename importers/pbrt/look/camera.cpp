@@ -82,10 +82,12 @@ Screen screen_of(const Parameters& p, const Film& film) {
         p.number("frameaspectratio", double(film.size.width) / double(film.size.height));
     Screen screen =
         aspect > 1 ? Screen{-aspect, aspect, -1, 1} : Screen{-1, 1, -1 / aspect, 1 / aspect};
-    if (const auto window = p.numbers("screenwindow", {Kind::Float, Kind::Integer});
-        window.size() == 4)
-        screen = {window[0], window[1], window[2], window[3]};
-    return screen;
+    const Parameter* const window = p.find("screenwindow", {Kind::Float, Kind::Integer});
+    if (!window)
+        return screen;
+    window->wants = 4;
+    const std::vector<double>& n = window->numbers;
+    return n.size() == 4 ? Screen{n[0], n[1], n[2], n[3]} : screen;
 }
 
 /// Returns the part of the screen that is rendered; rows go down.
@@ -154,6 +156,8 @@ std::optional<Camera> make_camera(const CameraRequest& request, const Film& film
         vector_through(to_world, {orthographic ? 0 : x, orthographic ? 0 : y, 1}),
         vector_through(to_world, {tangent * (screen.right - screen.left), 0, 0}),
         vector_through(to_world, {0, tangent * (screen.top - screen.bottom), 0}), orthographic};
+    if (!request.parameters.find("screenwindow") && !request.parameters.find("frameaspectratio"))
+        camera.window->shape = film.rendered().width / double(film.rendered().height);
     camera.eye = orthographic ? point_through(to_world, {x, y, 0}) : eye;
     camera.target = camera.eye + camera.window->direction;
     camera.up = camera.window->up;

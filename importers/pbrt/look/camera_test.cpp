@@ -44,5 +44,14 @@ TEST(PbrtFilm, APartOfThePictureIsTheSameView) {
         }
 }
 
+/// pbrt's angle of view is that of the shorter side, whatever the picture's shape.
+TEST(PbrtFilm, AWindowKnowsThePictureThatItIsFor) {
+    EXPECT_EQ(scene_of("", "\"perspective\"").camera->window->shape, 2);
+    EXPECT_EQ(scene_of("\"float cropwindow\" [0 1 0 0.5]", "\"perspective\"").camera->window->shape,
+              4);
+    for (const char* own : {"\"float frameaspectratio\" 1", "\"float screenwindow\" [-1 1 -1 1]"})
+        EXPECT_EQ(scene_of("", std::string("\"perspective\" ") + own).camera->window->shape, 0);
+}
+
 } // namespace
 } // namespace ovc
