@@ -98,6 +98,12 @@ TEST(PbrtMapping, SpectraBecomeTheirColors) {
         const vec3 c = pbrt::black_body(kelvin);
         EXPECT_NEAR(0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z, 1, 0.12) << kelvin;
     }
+    // v3 gives a scale of a spectrum that is 1 at its peak: of a candle hardly any light is seen.
+    const float dim =
+        scene_of("LightSource \"distant\" \"blackbody L\" [1900 1]").lights.at(0).color.y;
+    EXPECT_NEAR(dim / candle.y, 0.0327f, 0.0005f);
+    EXPECT_NEAR(scene_of("LightSource \"distant\" \"blackbody L\" 1900").lights.at(0).color.y,
+                candle.y, 1e-6f);
     // These are gold's at 580 nm, from Johnson and Christy 1972.
     EXPECT_NEAR(pbrt::metal_color(vec3(0.27f), vec3(2.9f)).x, 0.89f, 0.01f);
 }
@@ -131,6 +137,14 @@ TEST(PbrtMapping, LightsBringWhatPbrtsDo) {
         {"LightSource \"distant\" \"color L\" [3 3 3] \"point from\" [0 0 9]", {1, 2, 3}, 3},
         {"LightSource \"spot\" \"color I\" [8 8 8] \"float coneangle\" 30", {0, 0, 2}, 2},
         {"LightSource \"spot\" \"color I\" [8 8 8] \"float coneangle\" 30", {0, 2, 2}, 0},
+        // v4's powers and illuminances are those of light of color 1.
+        {"LightSource \"point\" \"rgb I\" [3 1 1] \"float power\" 8", {0, 0, 2}, 3 / (2 * kPi)},
+        {"LightSource \"point\" \"float scale\" 3 \"float power\" 8", {0, 0, 2}, 3 / (2 * kPi)},
+        {"LightSource \"spot\" \"float power\" 2 \"float coneangle\" 60 \"float conedeltaangle\" "
+         "60",
+         {0, 0, 2},
+         1 / kPi},
+        {"LightSource \"distant\" \"rgb L\" [3 1 1] \"float illuminance\" 5", {0, 0, 2}, 15},
     };
     for (const auto& test : cases) {
         const Scene scene = scene_of(test.text);
@@ -163,6 +177,15 @@ TEST(PbrtMapping, AreaLightsSendOutTheirLight) {
         EXPECT_NEAR(sum(ball, at), 5 * kPi / 100, 0.005);
     EXPECT_EQ(ball.soup.chunks[0].mask(), kSeenByAll & ~kShadowsLights);
     EXPECT_EQ(ball.materials[ball.meshes[0].material].finish->ambient, vec3(5));
+    // v4's power is that of each shape: the disk, and each of two triangles.
+    const std::string lit = "AreaLightSource \"diffuse\" \"float power\" 5 ";
+    const auto radiance = [](const Scene& scene) {
+        return scene.materials[scene.meshes.at(0).material].optics->emission.x;
+    };
+    EXPECT_NEAR(radiance(scene_of(lit + "Scale 2 2 2 Shape \"disk\"")), 5 / (4 * kPi * kPi), 0.002);
+    EXPECT_NEAR(radiance(scene_of(lit + "Shape \"trianglemesh\" \"integer indices\" [0 1 2 1 3 2] "
+                                        "\"point3 P\" [0 0 0 1 0 0 0 1 0 1 1 0]")),
+                5 / (0.5 * kPi), 1e-5);
     // Many spheres become few lights with all of their light.
     std::string many;
     for (int i = 0; i < 100; ++i)

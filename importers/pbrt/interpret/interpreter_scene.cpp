@@ -80,9 +80,9 @@ bool Interpreter::add_shape(Mesh mesh, const Sight& sight) {
                                 triangles_, options_.max_triangles));
     Shape shape{std::move(mesh), now_at(now.transforms), now.material, now.reversed, sight};
     if (now.emission && building_.empty()) {
-        shape.material =
-            materials_.emitter(now.material, now.emission->radiance, now.emission->two_sided);
-        lights_.add_area(shape, *now.emission);
+        const vec3 radiance = radiance_of(*now.emission, shape);
+        shape.material = materials_.emitter(now.material, radiance, now.emission->two_sided);
+        lights_.add_area(shape, radiance, now.emission->two_sided);
     } else if (now.emission) {
         diagnostics_.approximate("emitting objects", place_, "emission of instances left out");
     }

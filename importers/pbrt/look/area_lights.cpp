@@ -112,6 +112,11 @@ void set_falloff(Light& light, const vec3& intensity) {
     light.color = intensity * float(1 / (2 * kNear * kNear));
 }
 
+double surface_area(const Shape& shape) {
+    const std::vector<Patch> patches = patches_of(shape);
+    return surface_of(patches, {0, patches.size()}).area;
+}
+
 std::vector<Light> lights_on(const Shape& shape, const vec3& radiance, bool two_sided) {
     std::vector<Patch> patches = patches_of(shape);
     std::vector<Light> lights;

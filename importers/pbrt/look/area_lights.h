@@ -13,6 +13,9 @@ namespace ovc::pbrt {
 /// becomes a point and a spot, weighed by how much the normals agree.
 std::vector<Light> lights_on(const Shape& shape, const vec3& radiance, bool two_sided);
 
+/// Returns the area of a shape in the world.
+double surface_area(const Shape& shape);
+
 inline constexpr size_t kAreaPoints = 4;
 
 /// Makes the light fall with the square of the distance: `intensity` over distance squared arrives.

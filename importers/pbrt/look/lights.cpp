@@ -29,11 +29,11 @@ double cosine(double degrees) {
     return std::cos(degrees * (pi / 180));
 }
 
-/// Returns the intensity of a light that shines all ways with v4's "power"; nothing if the file
-/// does not give it.
-std::optional<float> intensity_of_power(const Parameters& p) {
-    const double power = p.number("power", -1);
-    return power >= 0 ? std::optional(float(power / (4 * pi))) : std::nullopt;
+/// Returns what v4's "power" or "illuminance" multiplies a light's color by. of_one: what a light
+/// of color 1 gives. A colour in rgb counts as it is, as in pbrt.
+float factor_of(const Parameters& p, std::string_view name, double of_one) {
+    const double wanted = p.number(name, -1);
+    return wanted > 0 ? float(wanted / of_one) : 1;
 }
 
 } // namespace
@@ -49,9 +49,9 @@ bool Lights::add(const std::string& type, const Parameters& parameters, const dm
     if (type == "point")
         add_point(parameters, to_world);
     else if (type == "spot")
-        add_spot(parameters, to_world);
+        add_spot(parameters, to_world, place);
     else if (type == "distant")
-        add_distant(parameters, to_world);
+        add_distant(parameters, to_world, place);
     else if (type == "infinite" || type == "exinfinite")
         add_infinite(parameters, to_world, place);
     else if (type == "goniometric")
@@ -69,10 +69,7 @@ bool Lights::add(const std::string& type, const Parameters& parameters, const dm
 void Lights::add_point(const Parameters& p, const dmat4& to_world) {
     Light light;
     light.position = point_through(to_world, p.point("from", dvec3(0)));
-    vec3 intensity = scaled(p, "I", vec3(1));
-    if (const auto power = intensity_of_power(p); power && mean(intensity) > 0)
-        intensity *= *power / mean(intensity);
-    set_falloff(light, intensity);
+    set_falloff(light, factor_of(p, "power", 4 * pi) * scaled(p, "I", vec3(1)));
     lights_.push_back(light);
 }
 
@@ -126,7 +123,7 @@ void Lights::add_projection(const Parameters& p, const dmat4& to_world, const Pl
     if (!picture_of(p)) {
         diagnostics_.approximate("projection", place,
                                  "projection lights without a picture are spots");
-        return add_spot(p, to_world);
+        return add_spot(p, to_world, place);
     }
     add_point(p, to_world);
     ImageTexture picture;
@@ -141,40 +138,46 @@ void Lights::add_projection(const Parameters& p, const dmat4& to_world, const Pl
     lights_.back().thrown->has_window = true;
 }
 
-void Lights::add_spot(const Parameters& p, const dmat4& to_world) {
+void Lights::tell_no_direction(const Place& place) {
+    diagnostics_.missing("direction of a light", place,
+                         "a light left out: its \"from\" and \"to\" make no direction");
+}
+
+void Lights::add_spot(const Parameters& p, const dmat4& to_world, const Place& place) {
     Light light;
     const dvec3 from = p.point("from", dvec3(0)), to = p.point("to", dvec3(0, 0, 1));
     light.position = point_through(to_world, from);
     const dvec3 direction = point_through(to_world, to) - light.position;
     if (!(glm::length(direction) > 0))
-        return;
+        return tell_no_direction(place);
     light.direction = glm::normalize(direction);
     const double angle = p.number("coneangle", p.number("fov", 30));
     const double soft = p.number("conedeltaangle", 5);
     light.cone = SpotCone{cosine(std::max(angle - soft, 0.0)), cosine(std::min(angle, 180.0)), 0};
-    set_falloff(light, scaled(p, "I", vec3(1)));
+    // pbrt takes half of the soft edge as lit.
+    const double lit = 2 * pi * (1 - (cosine(angle - soft) + cosine(angle)) / 2);
+    set_falloff(light, factor_of(p, "power", lit) * scaled(p, "I", vec3(1)));
     lights_.push_back(light);
 }
 
-void Lights::add_distant(const Parameters& p, const dmat4& to_world) {
+void Lights::add_distant(const Parameters& p, const dmat4& to_world, const Place& place) {
     const dvec3 from = p.point("from", dvec3(0, 0, 0)), to = p.point("to", dvec3(0, 0, 1));
     const dvec3 direction = vector_through(to_world, to - from);
     if (!(glm::length(direction) > 0))
-        return;
+        return tell_no_direction(place);
     Light light;
     light.parallel = true;
     light.direction = glm::normalize(direction);
-    vec3 irradiance = scaled(p, "L", vec3(1));
-    if (const double lux = p.number("illuminance", -1); lux >= 0 && mean(irradiance) > 0)
-        irradiance *= float(lux) / mean(irradiance);
-    light.color = irradiance; // the host divides it by pi, for the BRDF of a matte surface
+    // The host divides it by pi, for the BRDF of a matte surface.
+    light.color = factor_of(p, "illuminance", 1) * scaled(p, "L", vec3(1));
     lights_.push_back(light);
 }
 
 /// A map is a layer before a sky of even colours, which Whitted's model takes ambient light from.
 void Lights::add_infinite(const Parameters& p, const dmat4& to_world, const Place& place) {
-    const vec3 radiance = scaled(p, "L", vec3(1));
     const bool has_map = p.find("mapname") || p.find("filename");
+    const float factor = has_map ? 1 : factor_of(p, "illuminance", pi);
+    const vec3 radiance = factor * scaled(p, "L", vec3(1));
     if (has_map)
         diagnostics_.approximate("environment map", place,
                                  "environment maps light surfaces as a sky of even colours without "
@@ -207,12 +210,23 @@ std::optional<Emission> Lights::emission(const Parameters& p) const {
     Emission emission;
     emission.radiance = scaled(p, "L", vec3(1));
     emission.two_sided = p.flag("twosided", false);
+    if (const double power = p.number("power", -1); power > 0)
+        emission.power = power;
     return emission;
 }
 
-void Lights::add_area(const Shape& shape, const Emission& emission) {
+vec3 radiance_of(const Emission& emission, const Shape& shape) {
+    if (!emission.power)
+        return emission.radiance;
+    const uint64_t emitters = shape.mesh.emitters > 0 ? shape.mesh.emitters : shape.mesh.size();
+    const double of_one =
+        (emission.two_sided ? 2 : 1) * pi * surface_area(shape) / double(emitters);
+    return of_one > 0 ? float(*emission.power / of_one) * emission.radiance : emission.radiance;
+}
+
+void Lights::add_area(const Shape& shape, const vec3& radiance, bool two_sided) {
     any_ = true;
-    for (Light light : lights_on(shape, emission.radiance, emission.two_sided)) {
+    for (Light light : lights_on(shape, radiance, two_sided)) {
         light.stand_in = true;
         area_lights_.push_back(light);
     }

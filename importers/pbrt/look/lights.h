@@ -12,7 +12,11 @@ namespace ovc::pbrt {
 struct Emission {
     vec3 radiance{1};
     bool two_sided = false;
+    std::optional<double> power; // v4's, which each shape sends out that pbrt makes of a mesh
 };
+
+/// Returns the radiance that an emitting shape sends out.
+vec3 radiance_of(const Emission& emission, const Shape& shape);
 
 class Lights {
 public:
@@ -23,8 +27,9 @@ public:
     bool add(const std::string& type, const Parameters& parameters, const dmat4& to_world,
              const Place& place);
     std::optional<Emission> emission(const Parameters& parameters) const;
-    /// Adds an emitting shape, which its transform places in the world.
-    void add_area(const Shape& shape, const Emission& emission);
+    /// Adds an emitting shape, which its transform places in the world. radiance: what it sends out
+    /// everywhere.
+    void add_area(const Shape& shape, const vec3& radiance, bool two_sided);
 
     /// Moves all lights into the scene. view_up is the direction up in the picture.
     void finish(const dvec3& view_up, Scene& scene);
@@ -34,8 +39,9 @@ private:
     void add_point(const Parameters& parameters, const dmat4& to_world);
     void add_goniometric(const Parameters& parameters, const dmat4& to_world, const Place& place);
     void add_projection(const Parameters& parameters, const dmat4& to_world, const Place& place);
-    void add_spot(const Parameters& parameters, const dmat4& to_world);
-    void add_distant(const Parameters& parameters, const dmat4& to_world);
+    void add_spot(const Parameters& parameters, const dmat4& to_world, const Place& place);
+    void add_distant(const Parameters& parameters, const dmat4& to_world, const Place& place);
+    void tell_no_direction(const Place& place);
     void add_infinite(const Parameters& parameters, const dmat4& to_world, const Place& place);
     void add_map(const Parameters& parameters, const vec3& radiance, const dmat4& to_world,
                  const Place& place);

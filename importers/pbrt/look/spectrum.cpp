@@ -81,12 +81,32 @@ bool names(std::string_view name, std::string_view symbol) {
 
 } // namespace
 
+namespace {
+
+/// Returns Planck's law at nm / kelvin, up to a factor.
+double planck(double nm, double kelvin) {
+    const double x = nm * 1e-9;
+    return 1e-30 / (std::pow(x, 5) * std::expm1(1.438777e-2 / (x * kelvin)));
+}
+
+double within_range(double kelvin) {
+    return std::clamp(kelvin, 500.0, 1e5);
+}
+
+/// Returns the colour of a black body whose spectrum is 1 where it is largest, as in v2 and v3.
+vec3 black_body_by_peak(double kelvin) {
+    const double t = within_range(kelvin);
+    const double peak = planck(2.8977721e6 / t, t); // Wien's law
+    const dvec3 xyz = integrate([&](double nm) { return planck(nm, t) / peak; });
+    const double white = integrate([](double) { return 1.0; }).y;
+    return without_negatives(rgb_of_xyz(xyz / white));
+}
+
+} // namespace
+
 vec3 black_body(double kelvin) {
-    const double t = std::clamp(kelvin, 500.0, 1e5);
-    const dvec3 xyz = integrate([&](double nm) {
-        const double x = nm * 1e-9;
-        return 1e-30 / (std::pow(x, 5) * std::expm1(1.438777e-2 / (x * t)));
-    });
+    const double t = within_range(kelvin);
+    const dvec3 xyz = integrate([&](double nm) { return planck(nm, t); });
     return without_negatives(rgb_of_xyz(xyz / xyz.y));
 }
 
@@ -124,7 +144,7 @@ std::optional<vec3> color_of(const Parameter& parameter) {
     case Kind::Blackbody:
         if (n.empty())
             return std::nullopt;
-        return black_body(n[0]) * float(n.size() > 1 ? n[1] : 1);
+        return n.size() > 1 ? black_body_by_peak(n[0]) * float(n[1]) : black_body(n[0]);
     case Kind::Spectrum:
         if (n.size() == 1)
             return vec3(float(n[0]));

@@ -7,9 +7,9 @@
 namespace ovc::pbrt {
 
 /// Returns a colour of light or reflectance. The parameter may be a number; rgb; xyz; a black
-/// body's temperature in kelvin, and in v2 and v3 a scale; or a spectrum as pairs of wavelength in
-/// nm and value, or one value for all. Returns nothing for a spectrum's name or file, and for too
-/// few numbers.
+/// body's temperature in kelvin, of luminance 1, and in v2 and v3 a scale of a spectrum that is 1
+/// at its peak; or a spectrum as pairs of wavelength in nm and value, or one value for all. Returns
+/// nothing for a spectrum's name or file, and for too few numbers.
 std::optional<vec3> color_of(const Parameter& parameter);
 
 /// Returns the colour of a black body of luminance 1.

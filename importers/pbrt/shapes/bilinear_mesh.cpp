@@ -95,6 +95,7 @@ std::optional<Mesh> make_bilinear_mesh(ShapeRequest& request) {
         return std::nullopt;
     }
     Mesh mesh;
+    mesh.emitters = patches.size();
     for (const BilinearPatch& patch : patches)
         add_patch(patch, steps, request.wants_uv, mesh);
     return mesh;

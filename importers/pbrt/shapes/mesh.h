@@ -28,6 +28,7 @@ struct Mesh {
     /// The corners and normals of a PLY file that is not to be in memory, instead; or null. The
     /// functions below do not see them.
     std::shared_ptr<const TriangleStore> on_disk;
+    uint64_t emitters = 0; // the shapes that pbrt-v4 makes of it; 0: one of each triangle
     uint64_t normals_left_out = 0, texture_coordinates_left_out = 0; // as in MeshInfo
 
     uint64_t size() const {

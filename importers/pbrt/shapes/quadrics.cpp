@@ -220,7 +220,9 @@ std::optional<Mesh> make_quadric(ShapeRequest& request) {
         const double phi = request.parameters.number("phimax", 360);
         if (!is_usable(profile) || !(phi > 0))
             return left_out(request, "its numbers make no surface");
-        return sweep(profile, phi, fine, request.wants_uv);
+        Mesh mesh = sweep(profile, phi, fine, request.wants_uv);
+        mesh.emitters = 1;
+        return mesh;
     }
     return std::nullopt;
 }
