@@ -253,6 +253,44 @@ TEST(PbrtMapping, TheSkyIsABackground) {
     EXPECT_EQ(scene_of(kMesh).background.horizon, Background{}.horizon) << "no light at all: ours";
 }
 
+TEST(PbrtMapping, ALightWithoutADirectionIsSaid) {
+    const TestFolder folder;
+    for (const char* light : {"spot", "distant"}) {
+        std::vector<std::string> warnings;
+        const std::string text = std::string("LightSource \"") + light +
+                                 "\" \"point from\" [1 2 3] \"point to\" [1 2 3]" + kMesh;
+        ASSERT_TRUE(load(folder.write("a.pbrt", text), gather(warnings)));
+        ASSERT_EQ(warnings.size(), 1u) << light;
+        EXPECT_EQ(folder.plain(warnings[0]),
+                  "a.pbrt:1: a light left out: its \"from\" and \"to\" make no direction");
+    }
+}
+
+/// BT.2020's red has more red than sRGB's, and less than none of the others.
+TEST(PbrtMapping, ColorsAreOfTheColorSpaceThatIsNamed) {
+    const Scene scene =
+        scene_of("WorldBegin\nAttributeBegin ColorSpace \"rec2020\"\n"
+                 "Material \"diffuse\" \"rgb reflectance\" [.5 0 0]" +
+                 std::string(kMesh) + "Material \"diffuse\" \"rgb reflectance\" [.5 .5 .5]" +
+                 kMesh + "AttributeEnd\nMaterial \"diffuse\" \"rgb reflectance\" [.5 0 0]" + kMesh);
+    ASSERT_EQ(scene.meshes.size(), 3u);
+    const auto color = [&](size_t mesh) {
+        return scene.materials[scene.meshes[mesh].material].color;
+    };
+    expect_color(color(0), {0.8302455f, 0, 0}, 1e-5f, "red");
+    expect_color(color(1), vec3(0.5f), 1e-5f, "grey");
+    expect_color(color(2), {0.5f, 0, 0}, 1e-6f, "sRGB again");
+}
+
+TEST(PbrtMapping, MaterialsAreMixedColorByColor) {
+    const Material mixed = material_of(
+        "MakeNamedMaterial \"a\" \"string type\" \"matte\" \"rgb Kd\" [1 0 1] "
+        "MakeNamedMaterial \"b\" \"string type\" \"matte\" \"rgb Kd\" [0 1 0] "
+        "Material \"mix\" \"string namedmaterial1\" \"a\" \"string namedmaterial2\" \"b\" "
+        "\"rgb amount\" [.25 .5 1]");
+    expect_color(mixed.color, {0.25f, 0.5f, 1}, 1e-6f, "mixed");
+}
+
 TEST(PbrtMapping, CamerasSeeWhatPbrtsSee) {
     // pbrt is left-handed: looking along +z with +y up, +x is on the right.
     const Scene scene =

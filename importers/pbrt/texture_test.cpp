@@ -260,6 +260,34 @@ TEST(PbrtTexture, ANameThatIsDefinedAnewMeansTheNewTexture) {
     EXPECT_EQ(read.scene.pictures[0].file, "a.png");
 }
 
+/// As in v1 to v3. A name that is new within the scope stays, as in v4.
+TEST(PbrtTexture, ANameThatIsDefinedWithinAScopeEndsWithIt) {
+    const char* const inner =
+        "AttributeBegin Texture \"t\" \"color\" \"constant\" \"rgb value\" [0 1 0] "
+        "MakeNamedMaterial \"m\" \"string type\" \"matte\" \"rgb Kd\" [0 0 1] "
+        "MakeNamedMaterial \"n\" \"string type\" \"matte\" \"rgb Kd\" [0 1 1] AttributeEnd ";
+    const std::string outer =
+        "Texture \"t\" \"color\" \"constant\" \"rgb value\" [1 0 0] "
+        "MakeNamedMaterial \"m\" \"string type\" \"matte\" \"rgb Kd\" [1 1 0] ";
+    const auto color = [&](const std::string& material) {
+        return read_textured(outer + inner + material + kTexturedTriangle).material().color;
+    };
+    expect_near(color("Material \"matte\" \"texture Kd\" \"t\""), vec3(1, 0, 0));
+    expect_near(color("NamedMaterial \"m\""), vec3(1, 1, 0));
+    expect_near(color("NamedMaterial \"n\""), vec3(0, 1, 1));
+}
+
+TEST(PbrtTexture, ColorsAndFloatsMayHaveTheSameName) {
+    const TexturedScene read =
+        read_textured("Texture \"t\" \"color\" \"constant\" \"rgb value\" [1 0 0] "
+                      "Texture \"t\" \"float\" \"imagemap\" \"string filename\" \"a.png\" "
+                      "Material \"matte\" \"texture Kd\" \"t\" \"texture bumpmap\" \"t\"" +
+                      std::string(kTexturedTriangle));
+    expect_near(read.material().color, vec3(1, 0, 0));
+    EXPECT_FALSE(read.material().texture);
+    EXPECT_TRUE(read.material().normal_map);
+}
+
 TEST(PbrtTexture, AnEnvironmentMapIsALayerOfTheSky) {
     const TexturedScene read = read_textured(
         "AttributeBegin Rotate 90 0 0 1 LightSource \"infinite\" \"string mapname\" \"sky.exr\" "

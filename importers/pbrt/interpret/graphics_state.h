@@ -33,6 +33,12 @@ struct GraphicsState {
     uint32_t material = 0;
     std::optional<Emission> emission;
     bool reversed = false;
+    dmat3 to_srgb{1}; // from the color space of "rgb"
+    /// What the names of textures and materials meant where the scope began.
+    struct Names {
+        std::array<size_t, 2> textures{};
+        size_t alphas = 0, materials = 0;
+    } names;
 };
 
 /// The kind of directive that opened a level; the same kind closes it.

@@ -23,7 +23,7 @@ const Interpreter::Directive Interpreter::kDirectives[] = {
     {"AttributeBegin", &Interpreter::attribute_begin},
     {"AttributeEnd", &Interpreter::attribute_end},
     {"Camera", &Interpreter::camera},
-    {"ColorSpace", &Interpreter::setting},
+    {"ColorSpace", &Interpreter::color_space},
     {"ConcatTransform", &Interpreter::concatenate},
     {"CoordSysTransform", &Interpreter::coord_sys_transform},
     {"CoordinateSystem", &Interpreter::coordinate_system},
@@ -188,13 +188,17 @@ bool Interpreter::read_text(std::string& to) {
 }
 
 bool Interpreter::read_typed(std::string& type, Parameters& parameters) {
-    return read_text(type) && parameters.read(tokens_, diagnostics_);
+    if (!read_text(type) || !parameters.read(tokens_, diagnostics_))
+        return false;
+    parameters.take_colors_through(state_.now.to_srgb);
+    return true;
 }
 
 bool Interpreter::begin(Scope scope) {
     if (state_.depth() >= kDeepestScope)
         return diagnostics_.fail(
             place_, fmt::format("found more than {} levels in each other", kDeepestScope));
+    state_.now.names = {textures_.begin_scope(), alphas_.begin_scope(), materials_.begin_scope()};
     state_.push(scope);
     return true;
 }
@@ -203,7 +207,15 @@ bool Interpreter::end(Scope scope, std::string_view name) {
     if (!state_.pop(scope))
         diagnostics_.missing("unmatched " + std::string(name), place_,
                              fmt::format("{} without a beginning left out", name));
+    else if (scope != Scope::Transform)
+        end_names(state_.now.names);
     return true;
+}
+
+void Interpreter::end_names(const GraphicsState::Names& begin) {
+    alphas_.end_scope(begin.alphas);
+    textures_.end_scope(begin.textures);
+    materials_.end_scope(begin.materials);
 }
 
 bool Interpreter::attribute_begin() {

@@ -71,6 +71,8 @@ private:
     bool transform_end();
     bool begin(Scope scope);
     bool end(Scope scope, std::string_view name);
+    /// Ends the scopes of names that began since.
+    void end_names(const GraphicsState::Names& begin);
     bool reverse_orientation();
     bool object_begin();
     bool object_end();
@@ -90,6 +92,7 @@ private:
     bool area_light_source();
     bool camera();
     bool film();
+    bool color_space();
     bool medium();
     bool medium_interface();
     /// Skips a directive that says how to compute a picture, not what is in the scene.

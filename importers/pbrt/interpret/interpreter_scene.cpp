@@ -3,6 +3,7 @@
 #include "importers/pbrt/interpret/interpreter.h"
 
 #include "importers/file/text.h"
+#include "importers/pbrt/interpret/color_space.h"
 #include "importers/pbrt/interpret/left_over.h"
 #include "importers/pbrt/interpret/motion.h"
 #include "importers/pbrt/look/exposure.h"
@@ -196,6 +197,18 @@ bool Interpreter::film() {
         return false;
     film_ = read_film(parameters, diagnostics_);
     tell_left_over(parameters, "films", type, diagnostics_);
+    return true;
+}
+
+bool Interpreter::color_space() {
+    std::string name;
+    if (!read_text(name))
+        return false;
+    if (const auto to_srgb = color_space_of(name))
+        state_.now.to_srgb = *to_srgb;
+    else
+        diagnostics_.missing("color space " + name, place_,
+                             fmt::format("the color space {} left out", ovc::quoted(name)));
     return true;
 }
 

@@ -87,6 +87,8 @@ TEST(PbrtLeftOver, CountsAndRangesThatAreWrongAreErrors) {
          "a.pbrt:1: found cropwindow without a pixel in it"},
         {"Camera \"perspective\" \"float fov\" 180",
          "a.pbrt:1: found an angle of view of 180, expected more than 0 and less than 180"},
+        {"Camera \"perspective\" \"float screenwindow\" [-1 1 -1]",
+         "a.pbrt:1: found 3 values of 'screenwindow', expected 4"},
         {"Camera \"perspective\" \"float fov\" 0",
          "a.pbrt:1: found an angle of view of 0, expected more than 0 and less than 180"},
     };

@@ -131,6 +131,17 @@ bool Parameters::read_values(Tokens& tokens, Diagnostics& diagnostics, Parameter
     return !diagnostics.failed();
 }
 
+void Parameters::take_colors_through(const dmat3& colors) {
+    if (colors == dmat3(1))
+        return;
+    for (Parameter& p : list_)
+        for (size_t i = 0; p.kind == Kind::Rgb && i + 3 <= p.numbers.size(); i += 3) {
+            const dvec3 color = colors * dvec3(p.numbers[i], p.numbers[i + 1], p.numbers[i + 2]);
+            for (int c = 0; c < 3; ++c)
+                p.numbers[i + size_t(c)] = std::max(color[c], 0.0);
+        }
+}
+
 const Parameter* Parameters::find(std::string_view name) const {
     for (auto p = list_.rbegin(); p != list_.rend(); ++p)
         if (p->name == name) {

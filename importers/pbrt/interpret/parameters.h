@@ -54,6 +54,10 @@ public:
     /// Returns false after an error.
     bool read(Tokens& tokens, Diagnostics& diagnostics);
 
+    /// Takes the parameters "rgb" through a matrix of colors. What is no color then, because it has
+    /// less than nothing of red, green or blue, has none of it.
+    void take_colors_through(const dmat3& colors);
+
     /// Returns the last parameter of that name and one of these kinds, as in pbrt; null if there is
     /// none.
     const Parameter* find(std::string_view name, std::initializer_list<Kind> kinds) const;

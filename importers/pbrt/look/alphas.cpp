@@ -79,10 +79,15 @@ void Alphas::define(const std::string& name, const std::string& type, const Para
         pattern.refused = fmt::format("a texture {}", ovc::quoted(type));
     pattern.type = type;
     pattern.place = place;
-    const auto [at, is_new] = patterns_.try_emplace(name);
-    if (!is_new)
-        tell_unless_used(name, at->second);
-    at->second = std::move(pattern);
+    if (Pattern* const earlier = patterns_.find(name))
+        earlier->used = earlier->used || textures_.is_used(name);
+    patterns_.define(name, std::move(pattern));
+}
+
+void Alphas::end_scope(size_t begin) {
+    patterns_.end(begin, [&](const std::string& name, const Pattern& pattern) {
+        tell_unless_used(name, pattern);
+    });
 }
 
 /// What is not evaluated has been told of already where it was asked for as alpha.
@@ -131,11 +136,11 @@ Alphas::Pattern Alphas::scaled(const Parameters& p) const {
     std::array<std::string_view, 2> factors = {v4 ? "tex" : "tex1", v4 ? "scale" : "tex2"};
     if (!textures_.is_pattern(p, factors[0]))
         std::swap(factors[0], factors[1]);
-    const auto at = patterns_.find(texture_name(p, factors[0]));
+    const std::string name = texture_name(p, factors[0]);
     Pattern pattern;
-    if (at != patterns_.end()) {
-        pattern = at->second;
-        pattern.scales = at->first;
+    if (const Pattern* const factor = patterns_.find(name)) {
+        pattern = *factor;
+        pattern.scales = name;
     } else
         pattern.refused = "a product without a pattern of floats";
     if (textures_.is_pattern(p, factors[1]))
@@ -148,8 +153,8 @@ Alphas::Pattern Alphas::scaled(const Parameters& p) const {
 
 Alpha Alphas::of(const Parameters& parameters, std::string_view name) {
     if (textures_.is_pattern(parameters, name)) {
-        const auto at = patterns_.find(texture_name(parameters, name));
-        return {false, at == patterns_.end() ? kNone : make(at->second)};
+        Pattern* const pattern = patterns_.find(texture_name(parameters, name));
+        return {false, pattern ? make(*pattern) : kNone};
     }
     const double share = parameters.find(name) ? textures_.number(parameters, name, 1) : 1;
     if (!(share < 1) || share <= 0)
@@ -174,8 +179,8 @@ uint32_t Alphas::make(Pattern& pattern) {
         return *pattern.made;
     pattern.made = kNone;
     pattern.used = true;
-    if (const auto at = patterns_.find(pattern.scales); at != patterns_.end())
-        at->second.used = true;
+    if (Pattern* const factor = patterns_.find(pattern.scales))
+        factor->used = true;
     if (!pattern.refused.empty()) {
         diagnostics_.approximate(
             "alpha " + pattern.refused, pattern.place,
@@ -214,8 +219,8 @@ bool Alphas::read_picture(Pattern& pattern) {
 }
 
 std::vector<Cutout> Alphas::take(bool partial) {
-    for (const auto& [name, pattern] : patterns_)
-        tell_unless_used(name, pattern);
+    patterns_.for_each(
+        [&](const std::string& name, const Pattern& pattern) { tell_unless_used(name, pattern); });
     for (Cutout& cutout : cutouts_)
         cutout.partial = partial || cutout.texture != kNoTexture;
     return std::move(cutouts_);

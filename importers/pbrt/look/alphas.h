@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/scene.h"
+#include "importers/pbrt/interpret/scoped_names.h"
 #include "importers/pbrt/look/textures.h"
 
 #include <map>
@@ -24,6 +25,11 @@ public:
     /// read only once a shape names the texture.
     void define(const std::string& name, const std::string& type, const Parameters& parameters,
                 const Place& place);
+
+    size_t begin_scope() const { return patterns_.begin(); }
+    /// Ends the scope for which begin_scope() returned `begin`. Textures::end_scope() comes after
+    /// it.
+    void end_scope(size_t begin);
 
     /// Returns the alpha that the parameter of a shape states. Warns of what is not evaluated,
     /// which then makes no holes.
@@ -60,7 +66,7 @@ private:
     const Textures& textures_;
     const Tokens& tokens_;
     Diagnostics& diagnostics_;
-    std::map<std::string, Pattern> patterns_;
+    ScopedNames<Pattern> patterns_;
     std::map<double, uint32_t> constants_;  // the cutouts of constant alphas
     std::map<uint32_t, uint32_t> textured_; // those of textures of the scene
     std::vector<Cutout> cutouts_;

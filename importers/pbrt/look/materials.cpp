@@ -75,10 +75,12 @@ Material Materials::mix(const Parameters& parameters, const Place& place) {
     const double amount = textures_.number(parameters, "amount", 0.5);
     const bool v4 = parameters.find("materials") != nullptr;
     const float share = float(std::clamp(v4 ? amount : 1 - amount, 0.0, 1.0));
+    const vec3 of_colors = textures_.color(parameters, "amount", vec3(0.5f));
+    const vec3 shares = glm::clamp(v4 ? of_colors : vec3(1) - of_colors, vec3(0), vec3(1));
     Material m = share < 0.5f ? a : b;
-    m.color = glm::mix(a.color, b.color, share);
+    m.color = glm::mix(a.color, b.color, shares);
     m.transmission = blend(a.transmission, b.transmission, share);
-    m.filter = glm::mix(a.filter, b.filter, share);
+    m.filter = glm::mix(a.filter, b.filter, shares);
     if (a.finish && b.finish) {
         m.finish->diffuse = blend(a.finish->diffuse, b.finish->diffuse, share);
         m.finish->specular = blend(a.finish->specular, b.finish->specular, share);
@@ -87,8 +89,8 @@ Material Materials::mix(const Parameters& parameters, const Place& place) {
             glm::mix(a.finish->grazing_reflection, b.finish->grazing_reflection, share);
     }
     if (a.optics && b.optics) {
-        m.optics->diffuse = glm::mix(a.optics->diffuse, b.optics->diffuse, share);
-        m.optics->through = glm::mix(a.optics->through, b.optics->through, share);
+        m.optics->diffuse = glm::mix(a.optics->diffuse, b.optics->diffuse, shares);
+        m.optics->through = glm::mix(a.optics->through, b.optics->through, shares);
         m.optics->reflection = (share < 0.5f ? 1 - share : share) * m.optics->reflection;
     }
     return m;
@@ -105,13 +107,12 @@ void Materials::define(const std::string& name, const Parameters& parameters, co
     const std::string type = parameters.text("type", "matte");
     Mapped made = mapped(type, parameters, place);
     made.material.name = name;
-    named_[name] = add(std::move(made.material), made.holes);
+    named_.define(name, add(std::move(made.material), made.holes));
 }
 
 uint32_t Materials::named(const std::string& name, const Place& place) {
-    const auto at = named_.find(name);
-    if (at != named_.end())
-        return at->second;
+    if (const uint32_t* const found = named_.find(name))
+        return *found;
     diagnostics_.missing("named material " + name, place,
                          fmt::format("there is no material {}", ovc::quoted(name)));
     return 0;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/scene.h"
+#include "importers/pbrt/interpret/scoped_names.h"
 #include "importers/pbrt/look/textures.h"
 
 #include <unordered_map>
@@ -22,6 +23,9 @@ public:
     /// Returns the material of NamedMaterial; warns and returns the first if there is none of that
     /// name.
     uint32_t named(const std::string& name, const Place& place);
+    size_t begin_scope() const { return named_.begin(); }
+    /// Ends the scope for which begin_scope() returned `begin`.
+    void end_scope(size_t begin) { named_.end(begin); }
     /// Returns the material `surface` with an emission of this radiance.
     uint32_t emitter(uint32_t surface, const vec3& radiance, bool two_sided);
 
@@ -49,7 +53,7 @@ private:
     std::vector<Material> all_{Material{"matte", vec3(0.5f)}}; // the first before any Material
     std::vector<uint32_t> holes_{kNoTexture};                  // of each material
     std::vector<bool> wants_uv_{false};
-    std::unordered_map<std::string, uint32_t> named_;
+    ScopedNames<uint32_t> named_;
     std::unordered_multimap<std::string, uint32_t> by_key_; // indices into all_, to find equals
 };
 

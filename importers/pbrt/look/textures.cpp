@@ -17,6 +17,14 @@ static bool is_plain(const std::string& type) {
     return type == "constant" || type == "scale" || type == "mix";
 }
 
+/// Whether pbrt's parameters of this name are floats, whatever has them.
+static bool takes_floats(std::string_view name) {
+    static constexpr std::string_view kFloats[] = {"alpha",        "amount",     "bumpmap",
+                                                   "displacement", "roughness",  "shadowalpha",
+                                                   "sigma",        "uroughness", "vroughness"};
+    return std::ranges::find(kFloats, name) != std::end(kFloats);
+}
+
 /// Whether make() knows textures of this class, if their mapping and their parts are among those
 /// that it knows too.
 static bool is_evaluated(const TextureRequest& request) {
@@ -35,14 +43,14 @@ void Textures::define(const std::string& name, TextureRequest request) {
     definition.mean = mean(request.type, request.parameters);
     definition.is_pattern = !is_plain(request.type);
     for (const Parameter& p : request.parameters.all())
-        if (const Definition* const part = find(p)) {
+        if (const Definition* const part = find(p, request.is_float || takes_floats(p.name))) {
             definition.is_pattern = definition.is_pattern || part->is_pattern;
             definition.parts[p.name] = size_t(part - definitions_.data());
         }
     if (is_plain(request.type))
         tell_left_over(request.parameters, "textures", request.type, diagnostics_);
     definition.request = std::move(request);
-    by_name_[name] = definitions_.size();
+    by_name_[definition.request.is_float].define(name, definitions_.size());
     definitions_.push_back(std::move(definition));
 }
 
@@ -56,16 +64,23 @@ void Textures::tell_mean(const std::string& type, const Place& place) const {
 const Textures::Definition* Textures::find(const Parameters& parameters,
                                            std::string_view name) const {
     const Parameter* p = parameters.find(name);
-    return p ? find(*p) : nullptr;
+    return p ? find(*p, takes_floats(name)) : nullptr;
 }
 
-const Textures::Definition* Textures::find(const Parameter& parameter) const {
+/// A texture of colors and one of floats may have the same name. v1 leaves open which it asks for.
+const Textures::Definition* Textures::find(const Parameter& parameter, bool of_floats) const {
     // v1 may give a texture's name for a float or a colour.
     if ((parameter.kind != Kind::Texture && parameter.kind != Kind::String) ||
         parameter.strings.empty())
         return nullptr;
-    const auto at = by_name_.find(parameter.strings[0]);
-    return at == by_name_.end() ? nullptr : &definitions_[at->second];
+    const size_t* at = by_name_[of_floats].find(parameter.strings[0]);
+    at = at ? at : by_name_[!of_floats].find(parameter.strings[0]);
+    return at ? &definitions_[*at] : nullptr;
+}
+
+void Textures::end_scope(const std::array<size_t, 2>& begin) {
+    for (size_t kind = 0; kind < begin.size(); ++kind)
+        by_name_[kind].end(begin[kind]);
 }
 
 bool Textures::is_pattern(const Parameters& parameters, std::string_view name) const {
@@ -74,8 +89,8 @@ bool Textures::is_pattern(const Parameters& parameters, std::string_view name) c
 }
 
 bool Textures::is_used(const std::string& name) const {
-    const auto at = by_name_.find(name);
-    return at != by_name_.end() && definitions_[at->second].made.has_value();
+    const size_t* const at = by_name_[true].find(name);
+    return at && definitions_[*at].made.has_value();
 }
 
 vec3 Textures::mean(const std::string& type, const Parameters& p) const {

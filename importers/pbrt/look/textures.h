@@ -3,6 +3,7 @@
 // pictures, products, mixes, blocks and noise. Others are replaced by their mean.
 #pragma once
 
+#include "importers/pbrt/interpret/scoped_names.h"
 #include "importers/pbrt/interpret/tokens.h"
 #include "importers/pbrt/interpret/transform.h"
 #include "importers/pbrt/look/spectrum.h"
@@ -49,7 +50,10 @@ public:
     uint32_t product(uint32_t texture, const vec3& color);
     /// Adds a picture as a texture of the scene. place: names it.
     uint32_t image(const std::string& file, const Place& place, ImageTexture image, bool on_uv);
-    /// Returns whether texture() has returned the texture that has this name now.
+    std::array<size_t, 2> begin_scope() const { return {by_name_[0].begin(), by_name_[1].begin()}; }
+    /// Ends the scope for which begin_scope() returned `begin`.
+    void end_scope(const std::array<size_t, 2>& begin);
+    /// Returns whether texture() has returned the texture of floats that has this name now.
     bool is_used(const std::string& name) const;
     /// Returns whether a texture of the scene lies on texture coordinates.
     bool is_on_uv(uint32_t texture) const;
@@ -68,7 +72,7 @@ private:
     };
 
     const Definition* find(const Parameters& parameters, std::string_view name) const;
-    const Definition* find(const Parameter& parameter) const;
+    const Definition* find(const Parameter& parameter, bool of_floats) const;
     vec3 mean(const std::string& type, const Parameters& parameters) const;
     std::optional<uint32_t> make(size_t definition);
     std::optional<uint32_t> make_image(const TextureRequest& request);
@@ -86,9 +90,9 @@ private:
 
     Diagnostics& diagnostics_;
     const Tokens& tokens_;
-    std::vector<Definition> definitions_; // those of a name that was defined anew stay
-    std::unordered_map<std::string, size_t> by_name_;
-    Scene scene_; // only its textures and pictures
+    std::vector<Definition> definitions_;        // those of a name that was defined anew stay
+    std::array<ScopedNames<size_t>, 2> by_name_; // those of colors, then those of floats
+    Scene scene_;                                // only its textures and pictures
 };
 
 } // namespace ovc::pbrt

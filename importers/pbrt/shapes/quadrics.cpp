@@ -177,7 +177,9 @@ Profile paraboloid(const Parameters& p, const Steps& fine) {
 
 /// A hyperboloid is a line turned about the axis.
 Profile hyperboloid(const Parameters& p, const Steps& fine) {
-    const dvec3 p1 = p.point("p1", {0, 0, 0}), p2 = p.point("p2", {1, 1, 1});
+    dvec3 p1 = p.point("p1", {0, 0, 0}), p2 = p.point("p2", {1, 1, 1});
+    if (p2.z == 0) // as in pbrt, which turns the surface inside out
+        std::swap(p1, p2);
     const auto azimuth = [](const dvec3& v) { return std::atan2(v.y, v.x); };
     double twist = on_axis(p1) || on_axis(p2) ? 0 : std::abs(azimuth(p2) - azimuth(p1));
     twist = std::min(twist, 2 * pi - twist);
