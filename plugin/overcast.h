@@ -219,8 +219,9 @@ typedef struct ovc_scene_config {
     void* read_user;
     /* Experimental, of libovercast-mpi.so alone; elsewhere they are 0. There several processes, the
      * ranks of an MPI communicator, have a scene together: create_scene, commit and destroy_scene
-     * are calls that all ranks make, with the same meshes and the same config; every other call is
-     * a rank's own. See docs/guide/ranks.md. */
+     * are calls that all ranks make, with the same meshes and the same config, but for budgets; a
+     * commit in which they differ fails on all ranks. Every other call is a rank's own. See
+     * docs/guide/ranks.md. */
     int32_t communicator; /* as MPI_Comm_c2f tells it. 0: MPI_COMM_WORLD */
     uint32_t ranks_own;   /* ovc_ranks_own */
     double rank_timeout;  /* seconds: a rank that gives no word for so long is lost, and calls fail. 0: 60 */

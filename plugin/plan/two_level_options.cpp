@@ -103,8 +103,11 @@ static uint64_t share_of_page(const MemoryPlan& plan, uint64_t triangles) {
     return table + page_bytes <= plan.pool_bytes ? page_bytes : plan.pool_bytes / 2;
 }
 
-LeafLimits limits_of(const TwoLevelOptions& options, const MemoryPlan& plan, uint64_t triangles,
+LeafLimits limits_of(const TwoLevelOptions& options, const MemoryPlan& here, uint64_t triangles,
                      uint64_t unique) {
+    MemoryPlan plan = here;
+    plan.pool_bytes = std::min(plan.pool_bytes, options.cut_pool_bytes);
+    plan.buffer_bytes = std::min(plan.buffer_bytes, options.cut_buffer_bytes);
     // Halving ends between half full and full, so leaves are this full on average.
     constexpr double kFull = 0.7;
     const uint64_t page_bytes = std::min(share_of_page(plan, unique), plan.buffer_bytes);

@@ -41,6 +41,9 @@ struct TwoLevelOptions {
     std::optional<bool> beside;
     uint64_t driver_bytes = ~uint64_t(0); // for tests: as in MemoryPlan
     uint64_t buffer_bytes = 0;            // for tests: as in plan_memory()
+    /// Leaves are cut as for a pool, and for buffers, no larger than these, so that ranks cut alike
+    /// whatever their budgets are.
+    uint64_t cut_pool_bytes = ~uint64_t(0), cut_buffer_bytes = ~uint64_t(0);
     /// For tests: the max rays of a call that are numbered together, in 32 bits.
     uint64_t max_numbered_rays = uint64_t(1) << 31;
     LeafStore* store = nullptr; // reads what was saved, in place of the next

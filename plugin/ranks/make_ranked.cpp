@@ -3,6 +3,7 @@
 // they do not fit, or where the config says so.
 #include "core/system/caught_error.h"
 #include "core/text/format_text.h"
+#include "plugin/ranks/agreement.h"
 #include "plugin/ranks/ranked_scene.h"
 #include "plugin/ranks/sharing.h"
 #include "plugin/ranks/transport/mpi_transport.h"
@@ -31,6 +32,33 @@ Result<std::unique_ptr<TwoLevel>> built_here(const Soup& soup, GlThread& gl,
     }
 }
 
+RankTerms terms_of(const Soup& soup, const DeviceInfo& device, const ovc_scene_config& config,
+                   const TwoLevelOptions& options) {
+    RankTerms terms;
+    terms.alike = {soup.chunks.size(), soup.triangle_count(),  config.ranks_own,
+                   config.precision,   options.leaf_triangles, options.leaves};
+    terms.own.gpu_bytes =
+        config.gpu_memory_bytes ? config.gpu_memory_bytes : device.default_budget_bytes();
+    if (config.host_memory_bytes)
+        terms.own.host_bytes = config.host_memory_bytes;
+    if (const Result<MemoryPlan> plan = plan_memory(soup, options, device)) {
+        terms.own.pool_bytes = plan->pool_bytes;
+        terms.own.buffer_bytes = plan->buffer_bytes;
+    }
+    terms.own.has_saved = !options.saved.empty() || options.store;
+    return terms;
+}
+
+/// Lets this rank cut the scene as all ranks do.
+void cut_alike(const RankTerms::Own& all, uint32_t ranks, TwoLevelOptions& options) {
+    options.cut_pool_bytes = all.pool_bytes;
+    options.cut_buffer_bytes = all.buffer_bytes;
+    if (!all.has_saved)
+        options.saved = {};
+    if (!all.has_saved && !options.leaf_triangles && !options.leaves)
+        options.leaves = kLeavesPerRank * ranks;
+}
+
 } // namespace
 
 void check_config(const ovc_scene_config& config, const DeviceInfo& device) {
@@ -47,23 +75,26 @@ Result<std::unique_ptr<Structure>> make_structure(const Soup& soup, GlThread& gl
         return transport.error();
     TwoLevelOptions options = two_level_options(config);
     options.store = store;
+    Notes notes(**transport);
+    const Result<RankTerms::Own> terms =
+        agreed_terms(notes, **transport, terms_of(soup, gl.info(), config, options));
+    if (!terms)
+        return terms.error();
     SharingOptions share{.rank = (*transport)->rank(),
                          .always = config.ranks_own == OVC_RANKS_OWN_SHARE,
-                         .host_bytes = config.host_memory_bytes};
-    share.gpu_bytes =
-        config.gpu_memory_bytes ? config.gpu_memory_bytes : gl.info().default_budget_bytes();
+                         .gpu_bytes = terms->gpu_bytes,
+                         .host_bytes = terms->host_bytes};
     share.shares.ranks = (*transport)->ranks();
     share.shares.sample = {reinterpret_cast<const Ray*>(config.sample), size_t(config.sample_rays)};
     Sharing sharing(share, log);
     if ((*transport)->ranks() > 1 && config.ranks_own != OVC_RANKS_OWN_ALL) {
         options.choose_pages = [&](const BuiltScene& scene) { return sharing.choose(scene); };
-        if (options.saved.empty() && !store && !options.leaf_triangles && !options.leaves)
-            options.leaves = kLeavesPerRank * (*transport)->ranks();
+        cut_alike(*terms, (*transport)->ranks(), options);
     }
     Result<std::unique_ptr<TwoLevel>> local = built_here(soup, gl, options, log, progress);
-    Notes notes(**transport);
-    if (const Result<Done> all = first_error(
-            notes, **transport, local ? Result<Done>(Done{}) : Result<Done>(local.error()));
+    const Result<Done> alike = check_shares(notes, **transport, sharing.checksum());
+    if (const Result<Done> all =
+            first_error(notes, **transport, local ? alike : Result<Done>(local.error()));
         !all)
         return all.error();
     if (!sharing.shares())

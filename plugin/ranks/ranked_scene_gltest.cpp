@@ -26,7 +26,8 @@ protected:
     };
 
     std::vector<Rank> make(const Soup& soup, uint32_t count, const TwoLevelOptions& options,
-                           uint64_t everywhere_bytes = 0) {
+                           uint64_t everywhere_bytes = 0,
+                           const std::vector<uint64_t>& budgets = {}) {
         auto transports = MemoryTransport::make(count);
         std::vector<Rank> ranks(count);
         for (uint32_t rank = 0; rank < count; ++rank) {
@@ -36,6 +37,8 @@ protected:
             Sharing sharing(share, log);
             TwoLevelOptions here = options;
             here.choose_pages = [&](const BuiltScene& scene) { return sharing.choose(scene); };
+            if (!budgets.empty())
+                here.budget_bytes = budgets[rank];
             std::unique_ptr<TwoLevel> local = build(soup, here);
             if (!local)
                 return {};
@@ -136,6 +139,21 @@ TEST_F(RankedGl, SharesInstancesOut) {
                [&](size_t, RankedScene& scene) { test::expect_answers(scene, rays, expected); });
         end(ranks);
     }
+}
+
+TEST_F(RankedGl, CutsAlikeUnderOtherBudgets) {
+    const Soup soup = test::closed_grid(80);
+    const auto rays = test::unpleasant_rays(soup, 55, 300);
+    const std::vector<Hit> expected = test::brute_force(soup, rays);
+    const std::vector<uint64_t> budgets{0, uint64_t(112) << 10, uint64_t(512) << 10};
+    TwoLevelOptions options{.budget_bytes = budgets[1], .leaves = 24};
+    const Result<MemoryPlan> smallest = plan_memory(soup, options, gl->info());
+    ASSERT_TRUE(smallest);
+    options.cut_pool_bytes = smallest->pool_bytes;
+    auto ranks = make(soup, uint32_t(budgets.size()), options, 0, budgets);
+    ASSERT_EQ(ranks.size(), budgets.size());
+    on_all(ranks, [&](size_t, RankedScene& scene) { test::expect_answers(scene, rays, expected); });
+    end(ranks);
 }
 
 /// Lets prims count that are no multiple of three, and remembers that it was asked in order.

@@ -2,6 +2,7 @@
 // Compares what pages take with the budgets, and shares them out.
 #include "plugin/ranks/sharing.h"
 
+#include "core/file/checksum.h"
 #include "core/text/format_text.h"
 
 namespace ovc {
@@ -15,15 +16,29 @@ static size_t max_boxes_of_rank(uint32_t ranks) {
     return std::max<size_t>(256 / ranks, 32);
 }
 
+static uint64_t checksum_of_shares(const BuiltScene& scene, std::span<const PageBox> boxes,
+                                   std::span<const uint32_t> owners) {
+    Checksum sum;
+    for (const PageBox& box : boxes)
+        for (int axis = 0; axis < 3; ++axis) {
+            sum.add_value(box.box.lo[axis]);
+            sum.add_value(box.box.hi[axis]);
+        }
+    for (const Page& page : scene.pages)
+        sum.add_value(page.bytes());
+    sum.add(std::as_bytes(owners));
+    return sum.value();
+}
+
 bool Sharing::fits(const BuiltScene& scene) const {
     const uint64_t bytes = scene.level2_bytes();
     const uint64_t rest = options_.gpu_bytes / 4; // for rays, answers and the top-level tree
-    return (!options_.gpu_bytes || bytes <= options_.gpu_bytes - rest) &&
-           (!options_.host_bytes || bytes <= options_.host_bytes);
+    return bytes <= options_.gpu_bytes - rest && bytes <= options_.host_bytes;
 }
 
 PagesKept Sharing::choose(const BuiltScene& scene) {
     finder_.reset();
+    checksum_ = 0;
     if (!options_.always && fits(scene))
         return PagesKept(scene.pages.size(), true);
     const uint32_t ranks = options_.shares.ranks;
@@ -33,7 +48,9 @@ PagesKept Sharing::choose(const BuiltScene& scene) {
                 "{} leaves for {} ranks: their shares will differ much; with smaller leaves "
                 "they would not",
                 scene.pages.size(), ranks));
-    const std::vector<uint32_t> owners = share_out(scene, page_boxes(scene), options_.shares);
+    const std::vector<PageBox> boxes = page_boxes(scene);
+    const std::vector<uint32_t> owners = share_out(scene, boxes, options_.shares);
+    checksum_ = checksum_of_shares(scene, boxes, owners);
     finder_ = std::make_unique<StopFinder>(owned_boxes(scene, owners, max_boxes_of_rank(ranks)),
                                            options_.rank);
     PagesKept kept(owners.size());

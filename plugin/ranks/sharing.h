@@ -4,6 +4,7 @@
 
 #include "core/system/log.h"
 #include "plugin/build/keep_pages.h"
+#include "plugin/ranks/agreement.h"
 #include "plugin/ranks/shares.h"
 #include "plugin/ranks/stops.h"
 
@@ -16,9 +17,9 @@ namespace ovc {
 struct SharingOptions {
     uint32_t rank = 0; // of this process
     bool always = true;
-    /// Otherwise only where pages take more than the budgets of a rank; 0: no limit.
-    uint64_t gpu_bytes = 0;
-    uint64_t host_bytes = 0;
+    /// Otherwise only where pages take more than the smallest budgets of a rank.
+    uint64_t gpu_bytes = RankTerms::kNoLimit;
+    uint64_t host_bytes = RankTerms::kNoLimit;
     ShareOptions shares;
 };
 
@@ -33,6 +34,8 @@ public:
     /// rays.
     bool shares() const { return finder_ != nullptr; }
     std::unique_ptr<StopFinder> take_finder() { return std::move(finder_); }
+    /// Returns a checksum of the pages and of whose they are, for check_shares(); 0: no share.
+    uint64_t checksum() const { return checksum_; }
 
 private:
     bool fits(const BuiltScene& scene) const;
@@ -40,6 +43,7 @@ private:
     const SharingOptions options_;
     const LogSink& log_;
     std::unique_ptr<StopFinder> finder_;
+    uint64_t checksum_ = 0;
 };
 
 } // namespace ovc
