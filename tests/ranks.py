@@ -82,6 +82,42 @@ def compare_hits(overcast, folder, scene, counts):
         print(f"same: hits of {scene} and of its file, {ranks} ranks", flush=True)
 
 
+def side_by_side(*commands):
+    """Runs commands as the ranks of one job."""
+    job = list(MPIRUN)
+    for number, command in enumerate(commands):
+        job += ([":"] if number else []) + ["-n", "1", *command]
+    return subprocess.run(job, capture_output=True, text=True, env=ENVIRONMENT, timeout=60)
+
+
+def compare_unequal(overcast, folder):
+    """Ranks of other budgets render one picture; ranks of another command, picture, scene or config
+    are told so."""
+    alone, picture = folder / "alone.png", folder / "unequal.png"
+    render = [overcast, "render", "terrain-60", "-q", "--size", "64x48"]
+    run(0, render + ["-o", str(alone)])
+    render += ["-o", str(picture), "--rank-timeout", "10"]
+    share = render + ["--ranks-own", "share"]
+    for first, second in ((["100M"], ["400K"]), (["300K"], ["100M"])):
+        for begin in (render, share):
+            done = side_by_side(begin + ["--gpu-memory"] + first, begin + ["--gpu-memory"] + second)
+            if done.returncode:
+                fail(f"budgets {first} and {second}: exit {done.returncode}\n{done.stderr}")
+            same(alone, picture, f"budgets {first} and {second}")
+    knot = [overcast, "render", "knot", *render[3:]]
+    for one, other, sentence in (
+            (render, [overcast, "trace", "terrain-60"], "it has another command than rank 0"),
+            (render, render + ["--crop", "32x32+0+0"], "it has another picture than rank 0"),
+            (render, render + ["--samples", "4"], "it has another picture than rank 0"),
+            (share, render + ["--ranks-own", "all"], "has a config other than that of rank 0"),
+            (render, knot, "all ranks of a scene need the same meshes"),
+            (share, share + ["--camera", "0,9,9,0,0,0"], "the leaves of this rank")):
+        done = side_by_side(one, other)
+        if done.returncode == 0 or sentence not in done.stderr:
+            fail(f"{other}: exit {done.returncode}, and not: {sentence}\n{done.stderr}")
+    print("same: the picture of ranks that have other budgets; what is not alike is refused")
+
+
 def processes_of(word):
     """Returns the ids of the processes whose command line has the word, but for mpirun's."""
     found = []
@@ -253,6 +289,7 @@ def main():
                               PATH_BOX + ["--samples", "4", "--size", "48x48"]], (2,),
                              [["--gpu-memory", "16M"]])
             compare_hits(overcast, folder, "terrain-60", (3,))
+            compare_unequal(overcast, folder)
             kill_ranks(overcast, folder, 1, PATH_BOX + ["--samples", "16", "--size", "128x128"])
     return 0
 

@@ -263,7 +263,7 @@ public:
         if (Ranks::are_there() && job->kind != BenchKind::Contenders)
             return Error{"of the tables of bench, several processes share the work of contenders "
                          "alone"};
-        if (const Result<Done> opened = Ranks::open(/* timeout_seconds= */ 0); !opened)
+        if (const Result<Done> opened = Ranks::open("bench", /* timeout_seconds= */ 0); !opened)
             return opened.error();
         const Ranks* const ranks = Ranks::of_run();
         return bench(*job, ranks && !ranks->is_first() ? LogLevel::Error : *level);

@@ -481,7 +481,7 @@ static Result<RenderJob> understand(const RenderWords& words) {
 
 /// Makes this process one of several where mpirun has started them. The first one speaks for all.
 static Result<Done> join_ranks(RenderJob& job) {
-    if (const Result<Done> done = join_ranks(job.backend, job.scene); !done)
+    if (const Result<Done> done = join_ranks("render", job.backend, job.scene); !done)
         return done;
     job.render.ranks = Ranks::of_run();
     if (job.render.ranks && !job.render.ranks->is_first()) {

@@ -58,7 +58,7 @@ public:
             return backend_options.error();
         if (const Result<Done> fine = source_.check(); !fine)
             return fine.error();
-        if (const Result<Done> joined = join_ranks(*backend_options, source_); !joined)
+        if (const Result<Done> joined = join_ranks("trace", *backend_options, source_); !joined)
             return joined.error();
         const Ranks* const ranks = Ranks::of_run();
         const LogSink log =

@@ -95,11 +95,18 @@ static std::vector<uint32_t> frames_of(const RenderJob& job) {
 
 /// Returns for each frame whether is_there(), as the first rank sees it.
 static Result<RankBytes> frames_there(const RenderJob& job) {
+    const std::vector<uint32_t> frames = frames_of(job);
     RankBytes there;
-    for (const uint32_t frame : frames_of(job))
+    for (const uint32_t frame : frames)
         there.push_back(std::byte(is_there(job, frame)));
-    return job.render.ranks ? job.render.ranks->spread(there, goes_on_always)
-                            : Result<RankBytes>(std::move(there));
+    const Ranks* const ranks = job.render.ranks;
+    if (!ranks)
+        return there;
+    if (const Result<Done> agreed =
+            ranks->agree("list of frames", std::as_bytes(std::span(frames)));
+        !agreed)
+        return agreed.error();
+    return ranks->spread(there, goes_on_always);
 }
 
 /// Tells the user where --continue finds neither pixels nor frames of an earlier run.

@@ -108,7 +108,7 @@ private:
         if (const Result<Done> done = go_on_with(shot, film); !done)
             return done.error();
         if (job_.render.ranks)
-            if (const Result<Done> done = spread_film(*job_.render.ranks, film); !done)
+            if (const Result<Done> done = begin_with_ranks(*job_.render.ranks, shot, film); !done)
                 return done.error();
         if (const Result<RenderReport> report = trace(shot, film); report)
             frame.report = *report;
@@ -146,9 +146,17 @@ private:
         return loaded;
     }
 
-    /// Returns a checksum of everything that the pixels depend on, without the picture's size:
-    /// save_film() adds that.
-    uint64_t checksum_of_picture(const View& shot) const {
+    /// Gives all ranks the film of the first one. They would mix up pictures that differ.
+    Result<Done> begin_with_ranks(const Ranks& ranks, const View& shot, Film& film) const {
+        ByteWriter picture = view_of(shot);
+        picture(film.width(), film.height(), film.samples(), scene_.soup.triangle_count(),
+                scene_.soup.chunks.size(), scene_.lights, scene_.materials);
+        const Result<Done> agreed = ranks.agree("picture", picture.bytes());
+        return agreed ? spread_film(ranks, film) : agreed;
+    }
+
+    /// Returns what the pixels depend on besides the scene and the picture's size.
+    ByteWriter view_of(const View& shot) const {
         ByteWriter view;
         view(shot.camera, *options_.part, options_.integrator, options_.max_depth, options_.shadows,
              options_.cutouts, options_.seed, job_.backend.precision);
@@ -156,8 +164,14 @@ private:
             view(how->method, how->threshold, how->depth, how->jitter);
         if (options_.filter != FilterOptions{} || options_.clamp > 0)
             view(options_.filter.kind, options_.filter.radius, options_.clamp);
+        return view;
+    }
+
+    /// Returns a checksum of everything that the pixels depend on, without the picture's size:
+    /// save_film() adds that.
+    uint64_t checksum_of_picture(const View& shot) const {
         Checksum sum;
-        sum.add(view.bytes());
+        sum.add(view_of(shot).bytes());
         sum.add_value(checksum_of(scene_));
         return sum.value();
     }

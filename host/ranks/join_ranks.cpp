@@ -19,8 +19,8 @@ static uint64_t share_of_file(const std::string& path, uint32_t ranks) {
     return unreadable ? kLeast : std::max(kLeast, bytes / ranks / 5);
 }
 
-Result<Done> join_ranks(BackendOptions& backend, SceneArguments& scene) {
-    if (const Result<Done> done = Ranks::open(backend.rank_timeout); !done)
+Result<Done> join_ranks(std::string_view command, BackendOptions& backend, SceneArguments& scene) {
+    if (const Result<Done> done = Ranks::open(command, backend.rank_timeout); !done)
         return done;
     const Ranks* const ranks = Ranks::of_run();
     if (!ranks)

@@ -8,6 +8,7 @@
 #include <dlfcn.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -42,7 +43,7 @@ bool Ranks::library_is_there() {
     return std::filesystem::exists(find_plugin(kRankedProduct), ignored);
 }
 
-Result<Done> Ranks::open(double timeout_seconds) {
+Result<Done> Ranks::open(std::string_view command, double timeout_seconds) {
     if (!are_there() || ranks_of_run())
         return Done{};
     const std::string path = find_plugin(kRankedProduct);
@@ -57,7 +58,7 @@ Result<Done> Ranks::open(double timeout_seconds) {
     if (!table)
         return Error{fmt::format("MPI cannot be started by '{}'", path)};
     ranks_of_run().reset(new Ranks(*table));
-    return Done{};
+    return ranks_of_run()->agree("command", std::as_bytes(std::span(command)));
 }
 
 const Ranks* Ranks::of_run() {
@@ -129,6 +130,17 @@ Result<RankBytes> Ranks::spread(std::span<const std::byte> of_first, const GoesO
         result != OVC_OK)
         return error_of(table_, result);
     return first;
+}
+
+Result<Done> Ranks::agree(std::string_view on, std::span<const std::byte> mine) const {
+    const Result<RankBytes> first = spread(mine, goes_on_always);
+    if (!first)
+        return first.error();
+    if (!std::ranges::equal(*first, mine))
+        return Error{fmt::format("it has another {} than {}: all ranks need the same command, of "
+                                 "the same scene",
+                                 on, name_of(0))};
+    return Done{};
 }
 
 std::vector<uint32_t> Ranks::first_ranks(ovc_scene_t* scene, std::span<const Ray> rays) const {

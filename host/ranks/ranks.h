@@ -10,6 +10,7 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 struct ovc_ranks;
@@ -37,9 +38,9 @@ public:
     static bool are_there();
     /// Whether the library was built and lies where open() looks for it.
     static bool library_is_there();
-    /// Loads the library and starts MPI, where are_there(). All processes call it.
-    /// timeout_seconds: a rank that gives no word for so long is lost; 0: 60.
-    static Result<Done> open(double timeout_seconds);
+    /// Loads the library and starts MPI, where are_there(). All processes call it, with the same
+    /// command. timeout_seconds: a rank that gives no word for so long is lost; 0: 60.
+    static Result<Done> open(std::string_view command, double timeout_seconds);
     /// Returns the ranks after open(); null for a process that is alone.
     static const Ranks* of_run();
 
@@ -60,6 +61,9 @@ public:
                         const Take& take) const;
     /// Brings the bytes of rank 0 to all ranks, which all call this. Errors as of gather().
     Result<RankBytes> spread(std::span<const std::byte> of_first, const GoesOn& goes_on) const;
+    /// Compares bytes that stand for the ranks' command, picture or the like with those of rank 0;
+    /// all ranks call it. Error: they are others, or a rank is lost.
+    Result<Done> agree(std::string_view on, std::span<const std::byte> mine) const;
     /// Returns for each ray the rank whose leaves of the scene it comes by first, of those that no
     /// other rank has; kNone where there is none, and nothing where that cannot be told.
     std::vector<uint32_t> first_ranks(ovc_scene_t* scene, std::span<const Ray> rays) const;
