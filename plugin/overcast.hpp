@@ -70,12 +70,36 @@ T make() {
 /// Three rows of four, as in ovc_instance.
 using Transform = std::array<double, 12>;
 
+/// Allocates memory that is aligned to 64, as ovc_scene_config.saved has to be.
+template <class T>
+struct AlignedAllocator {
+    using value_type = T;
+    static constexpr std::align_val_t kAlignment{64};
+
+    AlignedAllocator() = default;
+    template <class Other>
+    AlignedAllocator(const AlignedAllocator<Other>&) {}
+    T* allocate(size_t count) {
+        return static_cast<T*>(::operator new(count * sizeof(T), kAlignment));
+    }
+    void deallocate(T* memory, size_t) noexcept { ::operator delete(memory, kAlignment); }
+    friend bool operator==(const AlignedAllocator&, const AlignedAllocator&) { return true; }
+    friend bool operator!=(const AlignedAllocator&, const AlignedAllocator&) { return false; }
+};
+
+/// The bytes that Scene::save() returns.
+struct SavedBytes : std::vector<std::byte, AlignedAllocator<std::byte>> {
+    /// A copy for programs that were written for an ordinary vector.
+    operator std::vector<std::byte>() const { return {begin(), end()}; }
+};
+
 /// Returns the table of the library that the program is linked with. Throws an Error where the
-/// library is too old.
+/// library is older than this header.
 inline const ovc_api& linked_api() {
-    if (const ovc_api* api = ovc_get_api(OVC_ABI_VERSION))
+    const ovc_api* api = ovc_get_api(OVC_ABI_VERSION);
+    if (api && api->struct_size >= sizeof(ovc_api))
         return *api;
-    throw Error(OVC_ERROR_NO_DEVICE, "libovercast.so does not have the ABI of overcast.h");
+    throw Error(OVC_ERROR_NO_DEVICE, "libovercast.so is older than overcast.h");
 }
 
 /// Prepares the process for devices; see ovc_api.prepare_process.
@@ -318,12 +342,12 @@ public:
     ovc_active active() const { return told<ovc_active>(api().active); }
     void purge() const { check(api().purge(get())); }
     /// Returns the bytes for ovc_scene_config.saved of a later scene.
-    std::vector<std::byte> save() const {
-        std::vector<std::byte> bytes;
+    SavedBytes save() const {
+        SavedBytes bytes;
         const auto append = [](void* user, const void* from, size_t size) {
             const auto* first = static_cast<const std::byte*>(from);
             try {
-                auto& to = *static_cast<std::vector<std::byte>*>(user);
+                auto& to = *static_cast<SavedBytes*>(user);
                 to.insert(to.end(), first, first + size);
                 return 0;
             } catch (const std::bad_alloc&) {

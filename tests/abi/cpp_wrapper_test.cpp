@@ -35,8 +35,8 @@ protected:
             GTEST_SKIP() << error.what();
         ASSERT_TRUE(device) << error.what();
     }
-    overcast::Scene committed() {
-        overcast::Scene scene(*device);
+    overcast::Scene committed(const ovc_scene_config& config = make<ovc_scene_config>()) {
+        overcast::Scene scene(*device, config);
         EXPECT_EQ(scene.add<float>(kCorners), 0u);
         EXPECT_EQ(scene.add_instance(0, {1, 0, 0, 2, 0, 1, 0, 0, 0, 0, 1, 0}), 1u);
         scene.commit();
@@ -65,7 +65,18 @@ TEST_F(CppWrapper, AnswersAsTheTableDoes) {
     scene.purge();
     EXPECT_EQ(scene.statistics().gpu_bytes, 0u);
     EXPECT_EQ(scene.intersect(rays)[2].mesh, 1u);
-    EXPECT_GT(scene.save().size(), 100u);
+}
+
+TEST_F(CppWrapper, WhatIsSavedServesALaterScene) {
+    const overcast::SavedBytes bytes = committed().save();
+    auto config = make<ovc_scene_config>();
+    config.saved = bytes.data();
+    config.saved_bytes = bytes.size();
+    const overcast::Scene scene = committed(config);
+    EXPECT_EQ(scene.statistics().from_saved, 1u);
+    const std::vector<std::byte> copied = bytes; // as programs of earlier versions take them
+    EXPECT_EQ(copied.size(), bytes.size());
+    EXPECT_EQ(scene.intersect1(kAlong).t, 1);
 }
 
 TEST_F(CppWrapper, TakesDoublesAndIndices) {
