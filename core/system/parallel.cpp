@@ -2,6 +2,8 @@
 // Loops on oneTBB; under ThreadSanitizer those of parallel_threads.cpp take their place.
 #include "core/system/parallel.h"
 
+#include "core/system/blocked_signals.h"
+
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/parallel_for.h>
@@ -157,6 +159,7 @@ void start_threads() {
     const std::lock_guard lock(mutex);
     if (started >= thread_count())
         return;
+    const BlockedSignals blocked;
     try_threads(thread_count() - started);
     try {
         gather_threads(thread_count());

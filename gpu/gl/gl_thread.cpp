@@ -2,6 +2,7 @@
 // GlThread: hands pieces of work over to the thread, first come, first served.
 #include "gpu/gl/gl_thread.h"
 
+#include "core/system/blocked_signals.h"
 #include "core/system/caught_error.h"
 #include "gpu/driver/driver_threads.h"
 
@@ -13,7 +14,10 @@ namespace ovc {
 Result<std::unique_ptr<GlThread>> GlThread::start(const std::string& device, LogSink log,
                                                   const DeviceLimits& limits) {
     std::unique_ptr<GlThread> self(new GlThread(device, std::move(log), limits));
-    self->thread_ = std::thread([&self = *self] { self.serve(); });
+    {
+        const BlockedSignals blocked;
+        self->thread_ = std::thread([&self = *self] { self.serve(); });
+    }
     std::unique_lock lock(self->mutex_);
     self->changed_.wait(lock, [&] { return self->started_.has_value(); });
     const Result<Done> started = *self->started_;

@@ -2,6 +2,7 @@
 // Devices: listing, opening, describing.
 #include "plugin/abi/device.h"
 
+#include "core/system/blocked_signals.h"
 #include "core/system/parallel.h"
 #include "core/text/format_text.h"
 #include "gpu/driver/vector_width.h"
@@ -81,6 +82,7 @@ void advise(const LogSink& log, const DeviceInfo& info) {
 Result<std::vector<DeviceInfo>> list_on_own_thread() {
     Result<std::vector<DeviceInfo>> found = Error{};
     std::exception_ptr thrown;
+    const BlockedSignals blocked;
     std::thread([&] {
         try {
             found = EglContext::list();

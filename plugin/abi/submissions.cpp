@@ -2,6 +2,7 @@
 // Submissions: one thread runs the calls of the queue, one after the other, in their order.
 #include "plugin/abi/submissions.h"
 
+#include "core/system/blocked_signals.h"
 #include "plugin/abi/submission.h"
 
 #include <cassert>
@@ -15,8 +16,10 @@ bool Submissions::submit(std::shared_ptr<Submission> submission, const Work& wor
         return false;
     waiting_.push_back(std::move(submission));
     try {
-        if (!thread_.joinable())
+        if (!thread_.joinable()) {
+            const BlockedSignals blocked;
             thread_ = std::thread([this, work] { serve(work); });
+        }
     } catch (...) {
         waiting_.pop_back();
         throw;

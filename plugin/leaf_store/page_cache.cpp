@@ -3,6 +3,7 @@
 // least lately goes.
 #include "plugin/leaf_store/page_cache.h"
 
+#include "core/system/blocked_signals.h"
 #include "core/system/caught_error.h"
 
 #include <sys/mman.h>
@@ -144,6 +145,7 @@ void PageCache::read_ahead(std::vector<uint32_t> pages) {
     wanted_ = std::move(pages);
     std::ranges::reverse(wanted_);
     try {
+        const BlockedSignals blocked;
         while (readers_.size() < kReaders)
             readers_.emplace_back([this](const std::stop_token& stop) { run_reader(stop); });
     } catch (const std::exception&) { // those that have started do, and pin() needs none

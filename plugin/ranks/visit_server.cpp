@@ -2,6 +2,7 @@
 // Joins the visits that wait to batches, traces these, and cuts the answers up again.
 #include "plugin/ranks/visit_server.h"
 
+#include "core/system/blocked_signals.h"
 #include "core/system/caught_error.h"
 #include "plugin/ranks/visit_arrays.h"
 
@@ -84,6 +85,7 @@ private:
 
 VisitServer::VisitServer(Structure& local, Transport& transport, LoopThreads* threads)
     : local_(local), transport_(transport), threads_(threads), batch_(std::make_unique<Batch>()) {
+    const BlockedSignals blocked;
     thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
 }
 

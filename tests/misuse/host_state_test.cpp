@@ -10,6 +10,10 @@
 #include <csignal>
 #include <cstdlib>
 #include <fenv.h>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <unistd.h>
 #include <vector>
 #include <xmmintrin.h>
 
@@ -82,6 +86,30 @@ TEST_F(Host, KeepsItsFloatingPointEnvironmentAndSignals) {
     expect_all_untouched(device.get());
     std::signal(SIGUSR1, SIG_DFL);
     unsetenv("OVC_MISUSE_TEST");
+}
+
+/// The host waits for SIGTERM, which is then blocked on its threads. Where it is open on another it
+/// ends the process.
+TEST_F(Host, TakesTheSignalsThatItWaitsFor) {
+    test::Subject subject(device.get());
+    for (const test::Entry& entry : test::entries())
+        EXPECT_EQ(entry.use(subject), OVC_OK) << entry.name;
+    size_t others = 0;
+    for (const auto& task : std::filesystem::directory_iterator("/proc/self/task")) {
+        if (task.path().filename() == std::to_string(gettid()))
+            continue;
+        std::ifstream status(task.path() / "status");
+        std::string name, line;
+        std::getline(status, name);
+        while (std::getline(status, line) && !line.starts_with("SigBlk:"))
+            ;
+        ASSERT_FALSE(line.empty());
+        const uint64_t blocked = std::stoull(line.substr(line.find('\t') + 1), nullptr, 16);
+        EXPECT_TRUE(blocked >> (SIGTERM - 1) & 1) << name;
+        EXPECT_FALSE(blocked >> (SIGSEGV - 1) & 1) << name;
+        ++others;
+    }
+    EXPECT_GT(others, 0u);
 }
 
 /// The host has a context on the same display as the plugin's device, in the middle of work.

@@ -3,6 +3,7 @@
 // heartbeats. Ranks watch each other in a ring, so that a thousand of them send no more than two.
 #include "plugin/ranks/transport/mpi_transport.h"
 
+#include "core/system/blocked_signals.h"
 #include "core/system/caught_error.h"
 #include "core/text/format_text.h"
 
@@ -70,6 +71,7 @@ public:
     explicit LimitedWait(const char* what) {
         if (!world().may_end_process)
             return;
+        const BlockedSignals blocked;
         thread_ = std::jthread([what](const std::stop_token& stop) {
             std::mutex mutex;
             std::condition_variable_any changed;
@@ -161,6 +163,7 @@ public:
         if (likeness == MPI_CONGRUENT && world().names.empty())
             for (uint32_t i = 0; i < ranks_; ++i)
                 world().names.push_back(name_of(i));
+        const BlockedSignals blocked;
         thread_ = std::thread([this] { run(); });
     }
     ~MpiTransport() override {
