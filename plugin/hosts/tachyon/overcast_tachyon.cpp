@@ -7,7 +7,6 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,17 +33,17 @@ static int fail(const std::string& sentence) {
     return EXIT_FAILURE;
 }
 
-/// The folders of libovercast.so and of ours, for LD_LIBRARY_PATH: this program's own where it was
-/// built, else where both were installed.
-static std::optional<std::string> find_libraries() {
+/// Returns the folders of libovercast.so and of ours, for LD_LIBRARY_PATH: this program's own where
+/// it was built, else where both were installed. None: they are in neither.
+static std::vector<std::string> find_libraries() {
     std::error_code error;
     const fs::path folder = fs::read_symlink("/proc/self/exe", error).parent_path();
     const fs::path installed = (folder / OVC_LIBRARY_FROM_COMMAND).lexically_normal();
     if (!error && fs::exists(folder / kLibrary, error))
-        return folder.string();
+        return {folder.string()};
     if (!error && fs::exists(installed / "overcast" / kLibrary, error))
-        return (installed / "overcast").string() + ":" + installed.string();
-    return std::nullopt;
+        return {installed.string(), (installed / "overcast").string()};
+    return {};
 }
 
 /// Puts `more` before what a variable of the environment lists.
@@ -56,8 +55,9 @@ static void prepend(const char* variable, const std::string& more) {
 
 /// The environment that brings the library into tachyon and, where OVC_PLUGIN names another
 /// libovercast.so, that one before ours. By name, as LD_PRELOAD knows no way to write a blank.
-static void preload(const std::string& folders) {
-    prepend("LD_LIBRARY_PATH", folders);
+static void preload(const std::vector<std::string>& folders) {
+    for (const std::string& folder : folders)
+        prepend("LD_LIBRARY_PATH", folder);
     prepend("LD_PRELOAD", kLibrary);
     if (const char* plugin = std::getenv("OVC_PLUGIN"); plugin && *plugin)
         prepend("LD_PRELOAD", plugin);
@@ -82,14 +82,17 @@ int main(int argc, char** argv) {
         setenv(device ? kDevice : kGpuMemory, argv[i], /* overwrite= */ 1);
     }
     std::fflush(stdout);
-    const std::optional<std::string> folders = find_libraries();
-    if (!folders)
+    const std::vector<std::string> folders = find_libraries();
+    if (folders.empty())
         return fail(std::string(kLibrary) +
                     " is neither beside this program nor where it installs");
+    if (folders.front().find_first_of(":;") != std::string::npos)
+        return fail("the libraries are in '" + folders.front() +
+                    "'; they are found only in a folder without colons and semicolons");
     if (const char* plugin = std::getenv("OVC_PLUGIN"); plugin && std::strpbrk(plugin, " :"))
         return fail("OVC_PLUGIN is '" + std::string(plugin) +
                     "'; a file is preloaded only from a folder without blanks and colons");
-    preload(*folders);
+    preload(folders);
     command.push_back(nullptr);
     execvp(command[0], command.data());
     return fail("cannot run tachyon: " + std::string(std::strerror(errno)) +

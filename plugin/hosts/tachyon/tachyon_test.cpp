@@ -263,6 +263,13 @@ TEST_F(TachyonHost, WhatCannotBeIsOneSentenceAndNoPicture) {
         EXPECT_THAT(drawn.output, HasSubstr(c.sentence));
         EXPECT_FALSE(fs::exists(folder_ / "none.ppm"));
     }
+    const fs::path colon = folder_ / "a:b";
+    fs::create_directory(colon);
+    fs::copy(kOurs, colon);
+    fs::copy(OVC_BINARY_DIR "/bin/libovercast_tachyon.so", colon);
+    const CommandResult apart = draw(colon / "overcast-tachyon", path, "none.ppm");
+    EXPECT_EQ(apart.exit_code, 1) << apart.output;
+    EXPECT_THAT(apart.output, HasSubstr("in a folder without colons and semicolons"));
     const CommandResult nothing = run_shell(kOurs + " --device");
     EXPECT_EQ(nothing.exit_code, 1);
     EXPECT_THAT(nothing.output, HasSubstr("--device is followed by nothing"));
