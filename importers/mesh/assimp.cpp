@@ -89,7 +89,8 @@ std::vector<std::string> textures_of(const aiScene& scene) {
             for (unsigned i = 0; i < scene.mMaterials[m]->GetTextureCount(aiTextureType(type));
                  ++i) {
                 aiString path;
-                if (scene.mMaterials[m]->GetTexture(aiTextureType(type), i, &path) != AI_SUCCESS)
+                if (scene.mMaterials[m]->GetTexture(aiTextureType(type), i, &path) != AI_SUCCESS ||
+                    path.length == 0) // as of an X3D file without a texture
                     continue;
                 if (std::find(names.begin(), names.end(), path.C_Str()) == names.end())
                     names.emplace_back(path.C_Str());

@@ -55,6 +55,19 @@ TEST(PbrtMapping, MatteNamesOfAllVersions) {
     }
 }
 
+TEST(PbrtMapping, TranslucentSurfacesReflectTheirShare) {
+    expect_color(material_of("Material \"translucent\"").color, vec3(0.125f), 1e-6f, "v3");
+    expect_color(
+        material_of("Material \"translucent\" \"rgb Kd\" [.4 .4 .8] \"rgb reflect\" [1 .5 .25]")
+            .color,
+        {0.4f, 0.2f, 0.2f}, 1e-6f, "reflect");
+    expect_color(material_of("Material \"diffusetransmission\"").color, vec3(0.25f), 1e-6f, "v4");
+    expect_color(material_of("Material \"diffusetransmission\" \"rgb reflectance\" [.4 .4 .8] "
+                             "\"float scale\" .5")
+                     .color,
+                 {0.2f, 0.2f, 0.4f}, 1e-6f, "scale");
+}
+
 TEST(PbrtMapping, MirrorGlassMetalAndHoles) {
     const Material mirror = material_of("Material \"mirror\" \"color Kr\" [.7 .8 .9]");
     expect_color(mirror.finish->reflection, {0.7f, 0.8f, 0.9f}, 1e-6f, "mirror");

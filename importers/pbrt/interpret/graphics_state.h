@@ -15,7 +15,8 @@ struct Transforms {
     std::array<dmat4, 2> at{dmat4(1), dmat4(1)};
     std::array<bool, 2> active{true, true};
 
-    bool move() const { return at[0] != at[1]; }
+    /// What is nowhere does not move; NaN is no number's equal.
+    bool move() const { return at[0] != at[1] && is_finite(at[0]) && is_finite(at[1]); }
     void multiply(const dmat4& by) {
         for (size_t i = 0; i < 2; ++i)
             if (active[i])

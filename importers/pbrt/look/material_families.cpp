@@ -89,11 +89,13 @@ void take_reflection(const MaterialContext& c, std::string_view name, Material& 
     m.finish->grazing_reflection /= mean_color;
 }
 
-/// Reads the color from the parameter `reflectance`, whose name depends on the version.
-Material matte(const MaterialContext& c, std::string_view reflectance) {
+/// Reads the color from the parameter `reflectance`, whose name depends on the version. share: of
+/// the color that is reflected.
+Material matte(const MaterialContext& c, std::string_view reflectance, float otherwise = 0.5f,
+               const vec3& share = vec3(1)) {
     Material m;
-    m.color = c.color(reflectance, 0.5f);
-    take_color(c, reflectance, vec3(1), m);
+    m.color = share * c.color(reflectance, otherwise);
+    take_color(c, reflectance, share, m);
     m.finish = plain_finish();
     m.optics = Optics{.diffuse = m.color};
     return m;
@@ -285,11 +287,24 @@ Material make_uber(const MaterialContext& c) {
     return m;
 }
 
-Material make_translucent(const MaterialContext& c) {
-    Material m = c.p.find("reflectance") ? matte(c, "reflectance") : matte(c, "Kd");
+void tell_translucent(const MaterialContext& c) {
     c.diagnostics.approximate("translucent", c.place,
                               "light that surfaces let through in all directions is left out");
-    return m;
+}
+
+Material make_translucent(const MaterialContext& c) {
+    tell_translucent(c);
+    return matte(c, "Kd", 0.25f, c.color("reflect", 0.5f));
+}
+
+Material make_diffuse_transmission(const MaterialContext& c) {
+    tell_translucent(c);
+    return matte(c, "reflectance", 0.25f, vec3(float(c.p.number("scale", 1))));
+}
+
+Material make_subsurface(const MaterialContext& c) {
+    tell_translucent(c);
+    return c.p.find("reflectance") ? matte(c, "reflectance") : matte(c, "Kd");
 }
 
 /// In Disney's material, spectrans decides between glass and the rest, and the metallic share
@@ -351,9 +366,9 @@ constexpr Family kFamilies[] = {{"matte", make_matte},
                                 {"shinymetal", make_shiny_metal},
                                 {"uber", make_uber},
                                 {"translucent", make_translucent},
-                                {"diffusetransmission", make_translucent},
-                                {"subsurface", make_translucent},
-                                {"kdsubsurface", make_translucent},
+                                {"diffusetransmission", make_diffuse_transmission},
+                                {"subsurface", make_subsurface},
+                                {"kdsubsurface", make_subsurface},
                                 {"disney", make_disney},
                                 {"fourier", make_tabulated},
                                 {"measured", make_tabulated},

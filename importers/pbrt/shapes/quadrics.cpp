@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cassert>
 #include <numbers>
+#include <utility>
 
 namespace ovc::pbrt {
 
