@@ -18,7 +18,8 @@ enum class ErrorKind {
     OverBudget,
     DeviceLost,
     Cancelled,
-    Unreadable // what was saved is damaged, or cannot be read
+    Unreadable,  // what was saved is damaged, or cannot be read
+    InvalidState // the call comes too early or too late
 };
 
 /// One sentence: the file, line or argument, the value found and the value expected.

@@ -220,8 +220,9 @@ typedef struct ovc_scene_config {
     /* Experimental, of libovercast-mpi.so alone; elsewhere they are 0. There several processes, the
      * ranks of an MPI communicator, have a scene together: create_scene, commit and destroy_scene
      * are calls that all ranks make, with the same meshes and the same config, but for budgets; a
-     * commit in which they differ fails on all ranks. Every other call is a rank's own. See
-     * docs/guide/ranks.md. */
+     * commit in which they differ fails on all ranks. Every other call is a rank's own. Changes too
+     * are made by all ranks, once all have their answers: a call whose rays come to a rank that has
+     * begun with changes is OVC_ERROR_INVALID_STATE. See docs/guide/ranks.md. */
     int32_t communicator; /* as MPI_Comm_c2f tells it. 0: MPI_COMM_WORLD */
     uint32_t ranks_own;   /* ovc_ranks_own */
     double rank_timeout;  /* seconds: a rank that gives no word for so long is lost, and calls fail. 0: 60 */

@@ -46,8 +46,10 @@ Changes& begin_change(ovc_scene scene) {
     if (scene->store)
         throw Failure{OVC_ERROR_INVALID_STATE,
                       "a scene with host_memory_bytes cannot change after commit"};
-    if (!scene->changes.any())
+    if (!scene->changes.any()) {
         scene->single_rays.serve(nullptr);
+        scene->structure->leave_soup();
+    }
     return scene->changes;
 }
 

@@ -116,6 +116,8 @@ inline ovc_result code_of(ErrorKind kind, ovc_result otherwise) {
         return OVC_ERROR_CANCELLED;
     case ErrorKind::Unreadable:
         return OVC_ERROR_UNREADABLE;
+    case ErrorKind::InvalidState:
+        return OVC_ERROR_INVALID_STATE;
     case ErrorKind::Other:
         break;
     }

@@ -38,6 +38,7 @@ public:
     Result<Done> all_hits(RaySpan rays, const Exclusions& without, const AllHits& all) override;
     void first_ranks(RaySpan rays, std::span<uint32_t> ranks) const override;
     Result<Done> purge() override;
+    void leave_soup() override { server_.leave_soup(); }
     ovc_statistics report() const override;
 
 private:

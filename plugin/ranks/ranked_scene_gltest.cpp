@@ -141,6 +141,20 @@ TEST_F(RankedGl, SharesInstancesOut) {
     }
 }
 
+TEST_F(RankedGl, TracesNothingThroughASceneThatChanges) {
+    const Soup soup = test::closed_grid(24);
+    const auto rays = test::rays_from_outside(56, 1000);
+    auto ranks = make(soup, 2, {.leaf_triangles = 100});
+    ASSERT_EQ(ranks.size(), 2u);
+    ranks[0].scene->leave_soup(); // the host now changes its copy, and the other rank asks still
+    std::vector<Hit> hits(rays.size());
+    const Result<Done> done = ranks[1].scene->intersect(rays, {}, hits);
+    ASSERT_FALSE(done);
+    EXPECT_EQ(done.error().kind, ErrorKind::InvalidState);
+    EXPECT_EQ(done.error().message.find("rank 0 on here: the scene has changed there"), 0u);
+    end(ranks);
+}
+
 TEST_F(RankedGl, CutsAlikeUnderOtherBudgets) {
     const Soup soup = test::closed_grid(80);
     const auto rays = test::unpleasant_rays(soup, 55, 300);

@@ -44,10 +44,9 @@ PagesKept Sharing::choose(const BuiltScene& scene) {
     const uint32_t ranks = options_.shares.ranks;
     if (scene.pages.size() < kFewLeaves * ranks && options_.rank == 0)
         say(log_, LogLevel::Warning,
-            format_text(
-                "{} leaves for {} ranks: their shares will differ much; with smaller leaves "
-                "they would not",
-                scene.pages.size(), ranks));
+            format_text("{} {} for {} ranks: their shares will differ much; with smaller leaves "
+                        "they would not",
+                        scene.pages.size(), scene.pages.size() == 1 ? "leaf" : "leaves", ranks));
     const std::vector<PageBox> boxes = page_boxes(scene);
     const std::vector<uint32_t> owners = share_out(scene, boxes, options_.shares);
     checksum_ = checksum_of_shares(scene, boxes, owners);

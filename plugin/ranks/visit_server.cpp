@@ -149,6 +149,9 @@ void VisitServer::serve(std::span<const Received> all, MessageKind kind) {
         some.push_back(&received);
     const std::lock_guard lock(local_mutex_);
     try {
+        if (has_left_soup_)
+            return fail(some, {"the scene has changed there, before all ranks had their answers",
+                               ErrorKind::InvalidState});
         batch_->fill(some);
         if (kind == MessageKind::AnyVisits)
             answer<uint8_t>(some, MessageKind::Occlusions, [&](std::span<uint8_t> occluded) {

@@ -37,6 +37,12 @@ public:
         const std::lock_guard lock(local_mutex_);
         return local_.purge();
     }
+    /// Lets rays fail that visit this rank from now on, and waits for those that are traced: the
+    /// host is about to change the scene.
+    void leave_soup() {
+        const std::lock_guard lock(local_mutex_);
+        has_left_soup_ = true;
+    }
 
 private:
     struct Batch;
@@ -55,6 +61,7 @@ private:
     LoopThreads* const threads_;
     const std::unique_ptr<Batch> batch_; // under way
     std::mutex local_mutex_;
+    bool has_left_soup_ = false; // behind the mutex
     std::atomic<bool> is_idle_{true};
     std::atomic<uint64_t> served_{0};
     std::jthread thread_; // ends first

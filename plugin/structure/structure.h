@@ -100,6 +100,9 @@ public:
     virtual Result<Done> save(const ByteSink&) const {
         return Error{"only two-level can be saved"};
     }
+    /// The soup is about to change: from now on nobody may read it, not even to answer other
+    /// processes, until update() or the structure's end.
+    virtual void leave_soup() {}
     /// Brings the structure up to date with its soup, which has changed so. Returns false where it
     /// must be made anew instead; it is then of no use any more, as where this throws or returns an
     /// error. Throws Cancelled when `progress` is told to stop.
