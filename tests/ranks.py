@@ -25,6 +25,12 @@ import time
 MPIRUN = ["mpirun", "--oversubscribe", "--bind-to", "none"]
 ENVIRONMENT = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
                    OMPI_MCA_mpi_yield_when_idle="1")
+MOVING = """camera { location <0,2,-6> look_at 0 }
+light_source { <5,8,-5> rgb 1 }
+plane { y, -1 pigment { checker rgb 1 rgb 0.3 } }
+sphere { <2*clock-1,0,0>, 0.7 pigment { rgb x } finish { reflection 0.3 } }
+box { <-2,-1,1>, <-1.2,0.3,1.6> translate clock*z pigment { rgb z } }
+"""
 PATH_BOX = ["box", "--integrator", "path"]
 
 
@@ -116,6 +122,19 @@ def compare_unequal(overcast, folder):
         if done.returncode == 0 or sentence not in done.stderr:
             fail(f"{other}: exit {done.returncode}, and not: {sentence}\n{done.stderr}")
     print("same: the picture of ranks that have other budgets; what is not alike is refused")
+
+
+def compare_layers(overcast, folder):
+    """The first rank traces layers of a frame; the others move on only then."""
+    (folder / "moving.pov").write_text(MOVING)
+    render = [overcast, "render", str(folder / "moving.pov"), "-q", "--frames", "1:3", "--size",
+              "160x160", "--aov", "depth,id,normal,albedo"]
+    run(0, render + ["-o", str(folder / "alone-#.exr")])
+    run(3, render + ["-o", str(folder / "layers-#.exr"), "--ranks-own", "share"])
+    for frame in (1, 2, 3):
+        run(0, [overcast, "diff", str(folder / f"alone-{frame}.exr"),
+                str(folder / f"layers-{frame}.exr")])
+    print("same: layers of frames in which something moves, 3 ranks")
 
 
 def processes_of(word):
@@ -290,6 +309,7 @@ def main():
                              [["--gpu-memory", "16M"]])
             compare_hits(overcast, folder, "terrain-60", (3,))
             compare_unequal(overcast, folder)
+            compare_layers(overcast, folder)
             kill_ranks(overcast, folder, 1, PATH_BOX + ["--samples", "16", "--size", "128x128"])
     return 0
 

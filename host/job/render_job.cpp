@@ -132,6 +132,15 @@ static void tell_of_up_left_out(const RenderJob& job, const Scene& scene, const 
                         job.scene.name()));
 }
 
+/// The first rank traces layers through the leaves of all ranks when these are done with a frame:
+/// they wait for it before anything moves.
+static Result<Done> wait_for_layers(const RenderJob& job) {
+    if (!job.render.ranks || !(job.aovs.any() || job.denoiser))
+        return Done{};
+    const auto told = job.render.ranks->spread({}, goes_on_always);
+    return told ? Result<Done>(Done{}) : told.error();
+}
+
 /// Renders every shot in turn until one is interrupted.
 static Result<Done> render_shots(const RenderJob& job, std::span<const std::byte> there,
                                  const PicturePart& part, Stage& stage, Scene& scene,
@@ -149,6 +158,8 @@ static Result<Done> render_shots(const RenderJob& job, std::span<const std::byte
         const Stopwatch watch;
         FrameStats begun;
         begun.tracing = stage.statistics();
+        if (const Result<Done> ready = wait_for_layers(job); !ready)
+            return ready;
         const Result<Done> moved = stage.go_to(shot.moment);
         stats.report.complete = moved || moved.error().kind != ErrorKind::Cancelled;
         if (!moved)
