@@ -55,8 +55,15 @@ std::vector<MeshExtent> extents_of(const Scene& scene) {
     std::map<Chunk::MeshKey, size_t> first_of;
     for (size_t m = 0; m < scene.meshes.size(); ++m) {
         const Chunk& chunk = scene.soup.chunks[m];
-        MeshExtent extent{chunk.origin(), chunk.corners().size(), scene.meshes[m].normals.size(),
-                          scene.meshes[m].uv.size()};
+        const MeshInfo& mesh = scene.meshes[m];
+        MeshExtent extent{chunk.origin(), chunk.corners().size(), mesh.normals.size(),
+                          mesh.uv.size()};
+        if (chunk.stored_corners())
+            extent.corners = 3 * uint64_t(chunk.size());
+        if (mesh.stored_normals)
+            extent.normals = 3 * mesh.stored_normals->triangles();
+        if (mesh.stored_uv)
+            extent.uv = 3 * mesh.stored_uv->triangles();
         const auto [first, is_new] = first_of.try_emplace(chunk.mesh_key(), m);
         if (!is_new) {
             extent.corners = 0;
@@ -490,14 +497,21 @@ uint64_t checksum_of(const Scene& scene) {
     sum.add(fields.bytes());
     const std::vector<MeshExtent> extents = extents_of(scene);
     sum.add(bytes_of(std::span<const MeshExtent>(extents)));
+    if (scene.on_disk) {
+        sum.add_value(scene.on_disk->values_checksum);
+        return sum.value();
+    }
+    std::array<Checksum, 3> values; // as a file has them of its large parts
     for (size_t m = 0; m < scene.meshes.size(); ++m) {
         if (extents[m].corners > 0)
-            sum.add(bytes_of(scene.soup.chunks[m].corners()));
-        sum.add(bytes_of(std::span<const vec3>(scene.meshes[m].normals)));
-        sum.add(bytes_of(std::span<const vec2>(scene.meshes[m].uv)));
+            values[0].add(bytes_of(scene.soup.chunks[m].corners()));
+        values[1].add(bytes_of(std::span<const vec3>(scene.meshes[m].normals)));
+        values[2].add(bytes_of(std::span<const vec2>(scene.meshes[m].uv)));
     }
-    if (scene.on_disk)
-        sum.add_value(scene.on_disk->values_checksum);
+    Checksum all;
+    for (const Checksum& part : values)
+        all.add_value(part.value());
+    sum.add_value(all.value());
     return sum.value();
 }
 

@@ -86,7 +86,8 @@ uint64_t scene_file_bytes(const Scene& scene, const TriangleStore& store, uint64
 /// such a scene.
 uint64_t bytes_for_shading(const Scene& scene, const TriangleStore& store, uint64_t host_bytes);
 
-/// Returns a checksum of everything that a picture of the scene depends on, and of its names.
+/// Returns a checksum of everything that a picture of the scene depends on, and of its names. It is
+/// the same whether a scene file was read or opened.
 uint64_t checksum_of(const Scene& scene);
 
 /// Reads a scene file and checks everything except the levels, which the plugin checks, so that it

@@ -135,6 +135,7 @@ TEST(SceneFile, IsTheSameSceneOnADisk) {
             EXPECT_EQ(a.triangle(prim), b.triangle(prim));
     }
     EXPECT_EQ(scene.soup.chunks[0].mesh_key(), scene.soup.chunks[1].mesh_key());
+    EXPECT_EQ(checksum_of(scene), checksum_of(held));
     ASSERT_TRUE(scene.on_disk);
     std::string read(scene.on_disk->levels_bytes, ' ');
     EXPECT_TRUE(scene.on_disk->file.read(scene.on_disk->levels_offset,
