@@ -31,6 +31,7 @@ static int fail(std::string_view sentence) {
 int main(int argc, char** argv) {
     try {
         ovc::exit_on_interrupt();
+        ovc::exit_on_bus_error();
         std::signal(SIGXFSZ, SIG_IGN); // write() fails instead where a file may not grow
         const ovc::Result<int> code = ovc::run_command({argv + 1, argv + argc});
         if (!code)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The two handlers of signals. A signal can only reach the program through variables of static
+// The handlers of signals. A signal can only reach the program through variables of static
 // lifetime.
 #include "host/terminal/interrupt.h"
 
@@ -43,15 +43,32 @@ static void leave(int) {
 /// The part of the message that says what the program does; null while no guard lives.
 static const char* doing_now = nullptr;
 
+static void handle_interrupts(void (*handler)(int)) {
+    std::signal(SIGINT, handler);
+    std::signal(SIGTERM, handler);
+    if (std::signal(SIGHUP, handler) == SIG_IGN)
+        std::signal(SIGHUP, SIG_IGN);
+}
+
 static void remember(int) {
     const int errno_before = errno;
     interrupt_seen = 1;
-    std::signal(SIGINT, leave);
-    std::signal(SIGTERM, leave);
+    handle_interrupts(leave);
     say("overcast: interrupted; ");
     say_on(doing_now);
     say_on(" (press again to give up)\n");
     errno = errno_before;
+}
+
+static void leave_on_bus_error(int) {
+    remove_unfinished_output();
+    say("overcast: a file that is in use was cut short, its disk has failed, or there is no room "
+        "for shared memory\n");
+    _exit(kExitError);
+}
+
+void exit_on_bus_error() {
+    std::signal(SIGBUS, leave_on_bus_error);
 }
 
 void say_nothing_on_interrupt() {
@@ -60,8 +77,7 @@ void say_nothing_on_interrupt() {
 
 void exit_on_interrupt() {
     on_terminal = isatty(STDERR_FILENO);
-    std::signal(SIGINT, leave);
-    std::signal(SIGTERM, leave);
+    handle_interrupts(leave);
 }
 
 InterruptGuard::InterruptGuard(const char* doing) : outer_(std::exchange(doing_now, doing)) {
@@ -69,8 +85,7 @@ InterruptGuard::InterruptGuard(const char* doing) : outer_(std::exchange(doing_n
         return;
     interrupt_seen = 0;
     on_terminal = isatty(STDERR_FILENO);
-    std::signal(SIGINT, remember);
-    std::signal(SIGTERM, remember);
+    handle_interrupts(remember);
 }
 
 InterruptGuard::~InterruptGuard() {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Handles SIGINT and SIGTERM: Ctrl-C, or whoever manages a machine's jobs, ends the program at once
-// with exit code 2, or, while there is something to save, asks it to stop.
+// Handles SIGINT, SIGTERM and SIGHUP: Ctrl-C, whoever manages a machine's jobs, or a terminal that
+// is closed, ends the program at once with exit code 2, or, while there is something to save, asks
+// it to stop.
 #pragma once
 
 namespace ovc {
@@ -10,8 +11,13 @@ inline constexpr int kExitError = 1;
 inline constexpr int kExitInterrupted = 2;
 
 /// Makes these signals print a message and exit with kExitInterrupted from now on. Outputs are
-/// written whole, and the one being written is removed, so nothing half done remains.
+/// written whole, and the one being written is removed, so nothing half done remains. SIGHUP stays
+/// ignored where it is, as under nohup.
 void exit_on_interrupt();
+
+/// Lets a mapped file that cannot be read, for it was cut short or its disk has failed, end the
+/// program with a sentence and kExitError.
+void exit_on_bus_error();
 
 /// Whether the signal has come while a guard lives.
 bool is_interrupted();

@@ -2,6 +2,7 @@
 // Tests Ctrl-C: the first one asks, the second one ends, and neither leaves half a file behind.
 #include "host/terminal/interrupt.h"
 
+#include "core/file/mapped_file.h"
 #include "importers/file/output_file.h"
 
 #include <gtest/gtest.h>
@@ -9,6 +10,8 @@
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
+#include <string>
 
 namespace ovc {
 
@@ -72,6 +75,38 @@ TEST_F(InterruptDeathTest, TheSecondRemovesWhatIsUnfinished) {
     EXPECT_EXIT(press_twice(), testing::ExitedWithCode(kExitInterrupted),
                 "press again to give up\\)\novercast: interrupted\n");
     EXPECT_TRUE(fs::is_empty(inside));
+}
+
+TEST_F(InterruptDeathTest, AClosedTerminalIsLikeOneUnlessItIsIgnored) {
+    const auto close_terminal = [] {
+        exit_on_interrupt();
+        std::raise(SIGHUP);
+    };
+    EXPECT_EXIT(close_terminal(), testing::ExitedWithCode(kExitInterrupted),
+                "overcast: interrupted\n");
+    const auto close_under_nohup = [] {
+        std::signal(SIGHUP, SIG_IGN);
+        exit_on_interrupt();
+        {
+            const InterruptGuard guard;
+            std::raise(SIGHUP);
+            std::_Exit(guard.interrupted() ? 9 : 0);
+        }
+    };
+    EXPECT_EXIT(close_under_nohup(), testing::ExitedWithCode(0), "^$");
+}
+
+TEST_F(InterruptDeathTest, AFileThatIsCutShortIsASentence) {
+    const fs::path path = folder_ / "mapped";
+    std::ofstream(path) << std::string(10000, 'x');
+    const auto touch = [&] {
+        exit_on_bus_error();
+        const Result<MappedFile> file = MappedFile::open(path);
+        fs::resize_file(path, 0);
+        std::_Exit(file ? int(file->bytes()[9000]) : 9);
+    };
+    EXPECT_EXIT(touch(), testing::ExitedWithCode(kExitError),
+                "a file that is in use was cut short");
 }
 
 } // namespace ovc
