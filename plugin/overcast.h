@@ -71,7 +71,7 @@ typedef enum ovc_ray_format {
 } ovc_ray_format;
 
 /* The nearest hit, at org + t dir = (1-u-v) a + u b + v c of the triangle's corners a, b, c; equal t goes to the smaller
- * (mesh, prim). A triangle that the ray sees exactly edge-on is not hit. In certified precision t, u and v are the exact values, each
+ * (mesh, prim). A triangle that the ray sees exactly edge-on is not hit. t, u and v are the exact values, each
  * rounded once to the nearest double. A miss: mesh = prim = OVC_NONE, t = infinity. 32 bytes. */
 typedef struct ovc_hit {
     double t;
@@ -132,7 +132,9 @@ typedef struct ovc_device_info {
 
 typedef enum ovc_precision {
     OVC_PRECISION_CERTIFIED = 0, /* the exact answer for doubles, each number rounded once: the kernel proves, the CPU decides the rest */
-    OVC_PRECISION_FAST = 1       /* the kernel's own t, u, v in float32; near edges and near ties another triangle may be named */
+    OVC_PRECISION_FAST = 1       /* float32 chooses the triangle: near sides, near ties and near the ray's ends another one may be
+                                    named, or none. What is named is truly hit, and its t, u and v are exact, each rounded once.
+                                    occluded takes float32's word. Of the structures of the thesis: the kernel's own t, u, v */
 } ovc_precision;
 
 typedef enum ovc_kernel {
@@ -323,8 +325,7 @@ typedef struct ovc_query {
      * ray, those in the same point too, come one after the other: hand in what the call before answered. The place is the exact
      * one of the hit that is named if its t is the double given; else it is that t itself. u and v do not matter. A t of -infinity: all
      * hits count; of infinity, as in a miss: none. `after` may be the array of hits that the answers are written to. In
-     * OVC_PRECISION_FAST the order is that of the rounded t, and the triangle that is named does not count. For
-     * OVC_STRUCTURE_TWO_LEVEL, as all that follows. */
+     * OVC_PRECISION_FAST some may be left out, and none comes twice. For OVC_STRUCTURE_TWO_LEVEL, as all that follows. */
     const ovc_hit* after;
     /* ray_count, or NULL: ray i sees a mesh where masks[i] and the mesh's mask have a bit in common, or where one of them is 0. */
     const uint32_t* masks;

@@ -7,8 +7,8 @@
 #ifndef OVC_ANY_HIT
 #define OVC_ANY_HIT 0
 #endif
-// 0: fast precision gives float32's own answer and flags nothing except rays whose loops were
-// ended.
+// 0: fast precision names the triangle that float32 finds nearest, and flags nothing except rays
+// whose loops were ended.
 #ifndef OVC_CERTIFY
 #define OVC_CERTIFY 1
 #endif

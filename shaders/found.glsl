@@ -15,7 +15,9 @@ struct Found {
     float further_hi;
     uint further[OVC_NAMES];
     int count; // of the further candidates
-    vec2 weights; // fast precision: of the pair's corners except v0; `order` makes u and v of them
+    // Fast precision of the thesis' systems: the weights of the pair's corners except v0, of which
+    // `order` makes u and v.
+    vec2 weights;
     uint order;
 };
 

@@ -102,8 +102,7 @@
 // that is named neither in w nor here is certainly not the answer. Where there are more of them, up
 // to OVC_MAX_NAMES, the compute kernel names them all where the ray was, in its first two texels;
 // x: OVC_LISTED; y: the number of that ray in the pass, and in the lowest OVC_LIST_BITS their
-// number. In fast precision x: t of the hit in the tree's frame (float bits); y: u and v in 16 bits
-// each.
+// number. In fast precision w alone says something, and is not certain.
 #define OVC_NO_LEAF 0x7fffffffu
 #define OVC_MISS 0x7fffffffu
 #define OVC_FLAGGED 0x7ffffffeu

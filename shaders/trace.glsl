@@ -97,14 +97,6 @@ bool give_answers(int first, Packet packet, Found found[OVC_PACKET], bool ended,
         float end = found[k].best_hi < 0.0 ? found[k].best_hi : end_of(packet, found[k], k);
         answer.z = (waits & ~OVC_KEY_LEAF) <= floatBitsToInt(end) ? uint(waits) : answer.z;
 #endif
-#if !OVC_CERTIFY
-        float t = found[k].best_lo;
-#if OVC_PORTALS
-        t = float(moved(t, packet.place.part, packet.place.scene));
-#endif
-        if (found[k].prim != OVC_MISS)
-            answer.xy = uvec2(floatBitsToUint(t), packUnorm2x16(barycentric(found[k])));
-#endif
         bool undecidable = found[k].best_hi == OVC_UNDECIDABLE;
         answer.w = undecidable ? OVC_FLAGGED : answer.w;
         if (answer.w == OVC_FLAGGED) {

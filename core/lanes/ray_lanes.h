@@ -66,7 +66,6 @@ struct LanesFrame {
 struct LocalRows {
     static constexpr int kOrg = 0, kEnd = 3, kDir = 4, kWord = 7; // places in a row
     alignas(64) float rows[RayLanes::kCount][8];
-    alignas(64) double enter[RayLanes::kCount], speed[RayLanes::kCount];
 };
 
 /// Fills in all rows, with the same bits on every processor, from `from` and t_max of the rays.

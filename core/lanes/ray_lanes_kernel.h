@@ -164,8 +164,6 @@ OVC_INLINE void to_frame_by(const LanesFrame& frame, const RayLanes& all, const 
         columns[LocalRows::kEnd] = t_end_of(frame, rays, inside, speed, reach * frame.scale);
         __builtin_memcpy(&columns[LocalRows::kWord], words + lane, sizeof(Floats));
         store_rows<V>(local, lane, columns);
-        __builtin_memcpy(local.enter + lane, &inside.enter, sizeof(V));
-        __builtin_memcpy(local.speed + lane, &speed, sizeof(V));
     }
 }
 

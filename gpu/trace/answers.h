@@ -25,22 +25,17 @@ struct Answer {
     uint32_t prim;
     /// The key of the link that the ray waits for; OVC_NO_LEAF if it waits for none.
     uint32_t where;
-    /// Certified precision: the further candidates where there are more than two, or none.
+    /// The further candidates where there are more than two, or none.
     std::span<const uint32_t> listed{};
 
-    /// Certified precision, not OVC_FLAGGED: triangles that may be the answer as well, two or more;
+    /// Not OVC_FLAGGED: triangles that may be the answer as well, two or more;
     /// OVC_NO_TRIANGLE in the place of those that there are not.
     std::span<const uint32_t> further() const {
         return listed.empty() ? std::span(words).first(2) : listed;
     }
     bool has_further() const { return words[0] != OVC_NO_TRIANGLE; }
-    /// Certified precision, OVC_FLAGGED: a t in the tree's frame, before which nothing is hit.
+    /// OVC_FLAGGED: a t in the tree's frame, before which nothing is hit.
     float first_t() const { return std::bit_cast<float>(words[1]); }
-    /// Fast precision: the ray's t at the hit.
-    double t() const { return std::bit_cast<double>(uint64_t(words[1]) << 32 | words[0]); }
-    /// Fast precision: barycentric coordinates of the hit, in [0, 1].
-    double u() const { return (words[2] & 0xffffu) / 65535.0; }
-    double v() const { return (words[2] >> 16) / 65535.0; }
 };
 
 /// The answers of a pass, in planes as the compute kernel writes them. Most say no more than a
@@ -50,22 +45,19 @@ struct Answers {
     std::array<std::vector<uint32_t>, 3> more; // x, y, z
     std::vector<uvec4> lists;                  // the rays, as far as any have names in their places
     size_t ray_texels = 0;                     // of one of them
-    std::span<const LocalTime> times;          // fast precision: of each ray; not owned
 
     Answer operator[](size_t i) const {
         const uint32_t prim = names[i] & ~OVC_SAYS_MORE;
         if (prim == names[i])
             return {{OVC_NO_TRIANGLE, OVC_NO_TRIANGLE, OVC_NO_LEAF}, prim, OVC_NO_LEAF};
         Answer answer{{more[0][i], more[1][i], more[2][i]}, prim, more[2][i]};
-        if (!times.empty() && prim < OVC_MAX_TRIANGLES)
-            come_back(answer, times[i]);
-        else if (is_listed(i))
+        if (is_listed(i))
             answer.listed = list_at(answer.words[1]);
         return answer;
     }
     /// Whether the answer's candidates are named in the place of a ray.
     bool is_listed(size_t i) const {
-        return (names[i] & OVC_SAYS_MORE) && more[0][i] == OVC_LISTED && times.empty();
+        return (names[i] & OVC_SAYS_MORE) && more[0][i] == OVC_LISTED;
     }
     /// Gives ray i the answer of slot `from`.
     void move(size_t i, size_t from) {
@@ -78,13 +70,6 @@ struct Answers {
 private:
     std::span<const uint32_t> list_at(uint32_t word) const {
         return {&lists[(word >> OVC_LIST_BITS) * ray_texels].x, word & ((1u << OVC_LIST_BITS) - 1)};
-    }
-    /// Converts a hit of fast precision to the form of Answer. The kernel gives t in the frame of
-    /// the top-level tree, then u and v.
-    static void come_back(Answer& answer, const LocalTime& time) {
-        const double local = std::bit_cast<float>(answer.words[0]);
-        const auto t = std::bit_cast<uint64_t>(time.enter + local / time.speed);
-        answer.words = {uint32_t(t), uint32_t(t >> 32), answer.words[1]};
     }
 };
 

@@ -92,7 +92,6 @@ void SentRays::reset(const RayForm& form, size_t rays) {
     parted_.clear();
     all_any_hit_ = false;
     std::visit([&](auto& all) { all.resize(std::max(all.size(), whole_blocks(rays))); }, rays_);
-    times_.resize(form.keeps_times ? whole_blocks(rays) : 0);
     set_size(rays);
 }
 
@@ -119,29 +118,23 @@ size_t SentRays::put(size_t at, const RayStates& states, uint32_t which) {
     }
     // What most calls are made of: eight rays as they are.
     auto* const rows = std::get_if<PagedVector<LocalRay>>(&rays_);
-    if (rows && in_lanes && !form_.keeps_times && which == RayLanes::first(RayLanes::kCount)) {
+    if (rows && in_lanes && which == RayLanes::first(RayLanes::kCount)) {
         std::memcpy(static_cast<void*>(&(*rows)[at]), local.rows, sizeof(local.rows));
         return RayLanes::kCount;
     }
     size_t i = at;
     const auto put_one = [&](auto& all, int lane) {
         const uint32_t skip = states.skip[size_t(lane)], asks = states.asks[size_t(lane)];
-        LocalTime time;
-        if (in_lanes)
-            time = {local.enter[lane], local.speed[lane]};
         if constexpr (is_world<decltype(all)>) {
             all[i] = states.state(lane);
-            if (form_.keeps_times)
-                local_ray(*form_.scene, all[i].ray, OVC_NO_TRIANGLE, false, time);
         } else {
+            LocalTime unused;
             write(all[i],
                   in_lanes ? ray_of(local, lane)
                            : local_ray(*form_.way_in, states.state(lane).ray, skip,
-                                       (asks & OVC_RAY_ANY_HIT) != 0, time),
+                                       (asks & OVC_RAY_ANY_HIT) != 0, unused),
                   asks);
         }
-        if (form_.keeps_times)
-            times_[i] = time;
         ++i;
     };
     std::visit(
@@ -174,8 +167,6 @@ void SentRays::close_holes(size_t block_rays, std::span<const size_t> counts) {
                 close(all, std::get<All>(other_rays_));
             },
             rays_);
-        if (form_.keeps_times)
-            close(times_, other_times_);
     }
     set_size(counts.empty() ? 0 : places.back() + counts.back());
 }
@@ -242,8 +233,6 @@ SentRays SentRays::first(size_t rays) const {
             std::copy_n(all.begin(), rays, copy.begin());
         },
         rays_);
-    if (form_.keeps_times)
-        std::copy_n(times_.begin(), rays, some.times_.begin());
     return some;
 }
 

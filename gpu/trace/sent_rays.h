@@ -62,7 +62,6 @@ struct RayForm {
     Kind kind = Kind::Local;
     const Leaf* scene = nullptr;    // the frame of the scene
     const Portal* way_in = nullptr; // the frame of the top-level tree where it is another
-    bool keeps_times = false;       // fast precision: t comes back in the frame
 };
 
 class SentRays {
@@ -93,8 +92,6 @@ public:
 
     /// Whole blocks of rays, as the kernel reads them.
     std::span<const std::byte> bytes() const;
-    /// The times of all rays; only if RayForm::keeps_times.
-    std::span<const LocalTime> times() const { return times_; }
     /// Returns a copy of the first rays, of which none is parted.
     SentRays first(size_t rays) const;
 
@@ -109,10 +106,8 @@ private:
     bool all_any_hit_ = false;
     using Rays =
         std::variant<PagedVector<LocalRay>, PagedVector<ResumedRay>, PagedVector<RayState>>;
-    Rays rays_; // in whole blocks
-    std::vector<LocalTime> times_;
+    Rays rays_;       // in whole blocks
     Rays other_rays_; // to which close_holes() copies them
-    std::vector<LocalTime> other_times_;
     std::vector<Parted> parted_;
 };
 

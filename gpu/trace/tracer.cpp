@@ -295,7 +295,7 @@ RayForm Tracer::form() const {
     const auto kind = has_portals() ? RayForm::Kind::World
                       : may_wait()  ? RayForm::Kind::Resumed
                                     : RayForm::Kind::Local;
-    return {kind, &scene_, top_.way_in ? &*top_.way_in : nullptr, !options_.certify};
+    return {kind, &scene_, top_.way_in ? &*top_.way_in : nullptr};
 }
 
 /// Returns how many words the kernel's stack has.
@@ -460,7 +460,6 @@ void Tracer::read(PassSlot& slot, Answers& answers) {
         slot.words->read(answers, slot.sent->slots());
     else
         slot.pixels->read(answers, slot.sent->size());
-    answers.times = options_.certify ? std::span<const LocalTime>() : slot.sent->times();
     if (slot.words)
         read_lists(slot, answers);
     for (const auto& [ray, from] : slot.sent->parted())

@@ -135,8 +135,7 @@ public:
     void begin_to_compile(const KernelVariant& variant);
     bool is_ready(const KernelVariant& variant) const;
 
-    /// Waits for the answers of the pass, which is over then. In fast precision they refer to its
-    /// rays.
+    /// Waits for the answers of the pass, which is over then.
     Result<Done> collect(Pass pass, Answers& answers);
     /// Submits the rays, and waits for their answers.
     Result<Done> trace(SentRays& rays, Answers& answers);

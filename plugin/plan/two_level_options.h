@@ -30,7 +30,7 @@ struct TwoLevelOptions {
     uint64_t budget_bytes = 0;   // 0: the device's default
     uint64_t leaf_triangles = 0; // 0: a tenth of the scene, or more where that is better
     uint64_t leaves = 0;         // instead of leaf_triangles: about so many; or 0
-    bool certify = true;         // false: fast precision, the kernel's own answers
+    bool certify = true;         // false: fast precision, the kernel's own choice of triangles
     bool compute = false;        // true: the compute kernel, else the fragment kernel
     bool tell_active = false;    // passes mark the pages that rays are traced through
     /// How the kernel's variant is chosen (docs/decisions/0032).

@@ -29,7 +29,7 @@ namespace ovc {
 inline constexpr Hit kSomeHit{0, 0, 0, {0, 0}}; // of an occlusion ray, whose triangle is not kept
 inline constexpr size_t kRaysPerTask = 256;     // in parallel loops over rays that are traced
 
-/// Whether an answer in certified precision tells which triangles the ray may hit.
+/// Whether an answer tells which triangles the ray may hit.
 inline bool names_candidates(const Answer& answer) {
     return answer.prim != OVC_FLAGGED && answer.prim != OVC_CAPPED;
 }
@@ -38,21 +38,6 @@ inline bool names_candidates(const Answer& answer) {
 inline Candidates candidates_of(const Answer& answer) {
     const uint32_t certain = answer.prim == OVC_ENDED ? OVC_MISS : answer.prim;
     return {certain, answer.further()};
-}
-
-/// Returns the hit with t, u and v of where the ray meets the triangle's plane, computed in
-/// doubles; the hit unchanged where they find no such point on the ray. Based on: Moller and
-/// Trumbore 1997.
-inline Hit in_doubles(const Hit& hit, const Ray& ray, const Triangle& triangle) {
-    const dvec3 ab = triangle[1] - triangle[0], ac = triangle[2] - triangle[0];
-    const dvec3 p = glm::cross(ray.dir, ac), from = ray.org - triangle[0];
-    const dvec3 q = glm::cross(from, ab);
-    const double determinant = glm::dot(ab, p);
-    const double t = glm::dot(ac, q) / determinant;
-    if (!(t >= ray.t_min && t <= ray.t_max))
-        return hit;
-    return {t, std::clamp(glm::dot(from, p) / determinant, 0.0, 1.0),
-            std::clamp(glm::dot(ray.dir, q) / determinant, 0.0, 1.0), hit.id};
 }
 
 /// The part of tracing that is the same however rays come to their leaves. Several threads may call
@@ -149,8 +134,7 @@ public:
         Decided decided;
         std::vector<InDoubt> in_doubt;
         // Without any more of an answer, where nothing else is known about rays.
-        const bool names_suffice =
-            !may_have_hit_ && tracing_.options.certify && query_.without.empty();
+        const bool names_suffice = !may_have_hit_ && query_.without.empty();
         const auto look = [&](size_t j) {
             const Answer answer = answers[first + j];
             if (!resolve_one(rays[j], answer, decided, go_on))
@@ -268,9 +252,6 @@ private:
     Exclusion exclusion(uint32_t i) const {
         Exclusion without = query_.without[i];
         without.after.is_certain = query_.has_own_places;
-        // In fast precision t is not exact enough to tell that a hit is the same as before.
-        if (!tracing_.options.certify && !without.after.is_before_all())
-            without.skip = without.after.id;
         return without;
     }
 
@@ -361,7 +342,7 @@ private:
                 fetch(name);
             return;
         }
-        if (!tracing_.options.certify || !names_candidates(answers[j]))
+        if (!names_candidates(answers[j]))
             return;
         const Answer answer = answers[j];
         const Candidates found = candidates_of(answer);
@@ -379,10 +360,10 @@ private:
             __builtin_prefetch(static_cast<const char*>(chunk.address_of(id.prim + 1)) - 1);
     }
 
-    /// Whether the answer names the nearest hit, and nothing is left to decide but t, u and v.
+    /// Whether the answer names the nearest hit, and nothing is left to decide but t, u and v. In
+    /// fast precision all that name one do.
     bool is_certain_hit(const Answer& answer) const {
-        return !Query::kAnyHit && tracing_.options.certify && answer.prim < OVC_MAX_TRIANGLES &&
-               !answer.has_further();
+        return !Query::kAnyHit && answer.prim < OVC_MAX_TRIANGLES && !answer.has_further();
     }
     /// Whether a hit, rounded, lies behind the place that the ray's hits lie behind, and before the
     /// hit that was found before this answer, if there was another.
@@ -400,8 +381,8 @@ private:
 
     /// Whether the answer names several triangles, and nothing but these decides about the ray.
     bool has_plain_candidates(uint32_t i, const Answer& answer) const {
-        return tracing_.options.certify && names_candidates(answer) && answer.has_further() &&
-               !was_hit(i) && exclusion(i).after.is_before_all();
+        return names_candidates(answer) && answer.has_further() && !was_hit(i) &&
+               exclusion(i).after.is_before_all();
     }
 
     /// Returns the t beyond which no hit of the ray can win against this one, or against none.
@@ -434,11 +415,7 @@ private:
     template <class GoOn>
     bool resolve_one(uint32_t i, const Answer& answer, Decided& decided, GoOn&& go_on) {
         capped_ += answer.prim == OVC_CAPPED;
-        if (!names_candidates(answer))
-            return false;
-        if (tracing_.options.certify)
-            return resolve_candidates(i, answer, decided, go_on);
-        return enter_fast(i, answer, go_on);
+        return names_candidates(answer) && resolve_candidates(i, answer, decided, go_on);
     }
 
     /// Returns false where exact arithmetic does not confirm the certain hit.
@@ -487,27 +464,6 @@ private:
             go_on(i, answer.where, limit);
         if (answer.has_further()) // fall_back() counts the others
             count_flagged(i);
-    }
-
-    /// The kernel was asked about the ray up to its hit before, if there was one, so this one is
-    /// nearer. Returns false where it is not behind the place that the ray's hits lie behind.
-    template <class GoOn>
-    bool enter_fast(uint32_t i, const Answer& answer, GoOn&& go_on) {
-        if (answer.prim == OVC_MISS) {
-            enter_miss(i);
-            return true;
-        }
-        Hit hit{answer.t(), answer.u(), answer.v(), scene_.numbers.id(answer.prim)};
-        if (!scene_.top.portals.empty()) // its t was told in the frame of the scene
-            hit = in_doubles(hit, query_.rays[i], scene_.soup.triangle(hit.id));
-        const Exclusion without = exclusion(i);
-        hit = scene_.seen(hit, without.skip);
-        if (!without.after.is_before_all() && !without.after.is_before(hit))
-            return false;
-        query_.set(i, hit);
-        if (!Query::kAnyHit && answer.where != OVC_NO_LEAF)
-            go_on(i, answer.where, hit.t);
-        return true;
     }
 
     /// Answers the rays exactly, in parallel where there are as many as `worth`. Those that meet

@@ -12,6 +12,7 @@
 #include <atomic>
 #include <numeric>
 #include <random>
+#include <set>
 #include <utility>
 
 namespace ovc {
@@ -654,6 +655,79 @@ TEST_F(TwoLevelGl, FastPrecisionSeesTheFloorThatEndsTheScene) {
         ASSERT_TRUE(hits[i].is_hit()) << "ray " << i;
         ASSERT_NEAR(hits[i].t, 1, 1e-5) << "ray " << i;
     }
+}
+
+/// Expects that what the ray was answered with is a hit of the triangle that it names, to the last
+/// bit, and not of `skip`.
+void expect_true(const Soup& soup, const Ray& ray, const Hit& hit, TriangleId skip) {
+    if (!hit.is_hit())
+        return;
+    EXPECT_FALSE(hit.id == skip);
+    const Hit exact = test::brute_force(soup, {hit.id}, ray);
+    EXPECT_EQ(exact.id, hit.id);
+    EXPECT_EQ(exact.t, hit.t);
+    EXPECT_EQ(exact.u, hit.u);
+    EXPECT_EQ(exact.v, hit.v);
+}
+
+TEST_F(TwoLevelGl, FastHitsBehindOneAnotherAreTrueAndComeOnce) {
+    for (const auto& [name, soup] : test::unpleasant_soups())
+        for (const bool compute : {false, true}) {
+            SCOPED_TRACE(name + (compute ? ", compute" : ", fragment"));
+            const auto rays = test::unpleasant_rays(soup, 51, 300);
+            const auto structure =
+                build(soup, {.leaf_triangles = 40, .certify = false, .compute = compute});
+            ASSERT_TRUE(structure);
+            std::vector<Hit> hits(rays.size()), after(rays.size(), kBeforeAll);
+            ASSERT_TRUE(ok(structure->intersect(rays, {}, hits)));
+            std::vector<TriangleId> skip(rays.size());
+            for (size_t i = 0; i < rays.size(); i += 2)
+                skip[i] = hits[i].id;
+            std::vector<std::set<TriangleId>> met(rays.size());
+            size_t left = 1;
+            for (size_t step = 0; left > 0; ++step) {
+                ASSERT_LE(step, soup.triangle_count());
+                ASSERT_TRUE(ok(structure->intersect(rays, Exclusions(skip, after), hits)));
+                left = 0;
+                for (size_t i = 0; i < rays.size(); ++i) {
+                    expect_true(soup, rays[i], hits[i], skip[i]);
+                    if (!hits[i].is_hit())
+                        continue;
+                    ++left;
+                    EXPECT_GE(hits[i].t, after[i].t);
+                    EXPECT_TRUE(met[i].insert(hits[i].id).second) << "ray " << i;
+                }
+                after = hits;
+            }
+        }
+}
+
+TEST_F(TwoLevelGl, FastRaysBehindMaskedHitsDoNotSeeWhatTheySkip) {
+    Soup soup = test::random_soup(52, 400, 0.3);
+    Soup other = test::random_soup(53, 400, 0.3);
+    soup.chunks.push_back(std::move(other.chunks.front()));
+    soup.chunks[0].set_mask(1);
+    soup.chunks[1].set_mask(2);
+    const auto rays = test::rays_from_outside(54, 3000);
+    const std::vector<uint32_t> masks(rays.size(), 2);
+    const auto structure = build(soup, {.leaf_triangles = 40, .certify = false});
+    ASSERT_TRUE(structure);
+    std::vector<Hit> hits(rays.size());
+    Exclusions without;
+    without.sieves.masks = masks;
+    ASSERT_TRUE(ok(structure->intersect(rays, without, hits)));
+    std::vector<TriangleId> skip;
+    for (const Hit& hit : hits)
+        skip.push_back(hit.id);
+    without.skip = skip;
+    ASSERT_TRUE(ok(structure->intersect(rays, without, hits)));
+    size_t second = 0;
+    for (size_t i = 0; i < rays.size(); ++i) {
+        expect_true(soup, rays[i], hits[i], skip[i]);
+        second += hits[i].is_hit();
+        EXPECT_TRUE(!hits[i].is_hit() || hits[i].id.mesh == 1);
+    }
+    EXPECT_GT(second, 100u);
 }
 
 TEST_F(TwoLevelGl, NamesTheSmallestBudgetThatWorks) {

@@ -36,8 +36,8 @@ class Scene:
     gpu_memory: bytes that pages, rays and answers may take on the device together; 0: the device's
         free memory, less headroom. Larger scenes are traced in parts. A budget too small for any
         part raises an Error that names the smallest that works.
-    precision: "certified": the answers of double precision, bit for bit; "fast": the kernel's own
-        in float32.
+    precision: "certified": the answers of exact arithmetic, rounded once; "fast": float32 chooses
+        the triangle, and near sides and ties another than the nearest may be named, or none.
     leaf_triangles, leaves: the max number of triangles in a part of the scene, or instead about how
         many parts there are; 0: as suits the budget.
     kernel: "auto", "fragment" or "compute".
