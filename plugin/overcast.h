@@ -309,7 +309,7 @@ typedef struct ovc_query {
     const ovc_triangle* skip; /* ray_count, or NULL: the triangle that ray i starts on and therefore does not see; {OVC_NONE, OVC_NONE}, or one that there is not: none */
     /* Experimental. Written by intersect of OVC_STRUCTURE_TWO_LEVEL alone; NULL for all else. */
     uint32_t* leaf;   /* ray_count, or NULL: the level-1 leaf that the hit of ray i lies in; OVC_NONE: a miss */
-    uint32_t* passes; /* ray_count, or NULL: kernel launches that ray i took part in; 0: an invalid ray, or one that doubles alone could walk */
+    uint32_t* passes; /* ray_count, or NULL: kernel launches that ray i took part in; 0: one that is invalid or passes the scene by, or that doubles alone could walk */
     uint32_t* flagged; /* ray_count, or NULL: 1 where the kernel was not certain and doubles decided; else 0 */
     uint32_t ray_format; /* ovc_ray_format */
     uint32_t reserved;   /* 0 */
@@ -397,11 +397,12 @@ typedef struct ovc_statistics {
     uint64_t pages_in;
     /* + their bytes */
     uint64_t bytes_in;
-    /* + rays that asked for their nearest hit */
+    /* + rays that asked for their nearest hit, or for all hits */
     uint64_t nearest_rays;
     /* + rays that asked whether anything is hit */
     uint64_t occlusion_rays;
-    /* + rays with NaN or infinity in them, answered as misses */
+    /* + rays that can hit nothing: NaN or infinity in them, a direction below 1e-300,
+     * t_min > t_max */
     uint64_t invalid_rays;
     /* + rays, counted once in each pass that they took part in */
     uint64_t ray_visits;
@@ -416,7 +417,7 @@ typedef struct ovc_statistics {
     double seconds_level1;
     /* building and packing all pages */
     double seconds_level2;
-    /* + inside intersect and occluded */
+    /* + inside calls with rays in batches, and streams without their host's functions */
     double seconds_trace;
     /* + of `seconds_pass`, the kernel alone, by the device's clock; with a software renderer the
      * CPU time of its threads, shared out among them; all of it where a structure cannot tell */

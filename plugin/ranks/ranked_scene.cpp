@@ -148,7 +148,9 @@ Result<Done> RankedScene::occluded(RaySpan rays, const Exclusions& without,
 }
 
 Result<Done> RankedScene::all_hits(RaySpan rays, const Exclusions& without, const AllHits& all) {
+    const Stopwatch watch;
     watch_.begin_call();
+    counted_.nearest_rays += rays.size();
     std::ranges::fill(all.hits, Hit());
     std::ranges::fill(all.counts, 0u);
     if (all.has_enough(0))
@@ -183,6 +185,7 @@ Result<Done> RankedScene::all_hits(RaySpan rays, const Exclusions& without, cons
             hits[some.numbers[i]] = some.hits[i];
         numbers = std::move(some.numbers);
     }
+    counted_.seconds_trace += watch.seconds();
     return done;
 }
 

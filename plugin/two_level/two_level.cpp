@@ -44,7 +44,6 @@ template <class Query>
 Result<Done> TwoLevel::trace(const Query& query) {
     assert(query.results.size() == query.rays.size());
     assert(query.without.are_for(query.rays.size()));
-    const Stopwatch watch;
     watch_.begin_call();
     const Result<SharedBudget::Use> use = passes_.begin_use();
     if (!use)
@@ -52,15 +51,22 @@ Result<Done> TwoLevel::trace(const Query& query) {
     const bool in_one_pass = passes_.all_resident() && !query.has_sieves();
     const Result<Done> done = in_one_pass ? trace_in_one_pass(tracing_, passes_, query)
                                           : trace_in_waves(tracing_, passes_, query);
-    if (!done)
-        return done;
-    (Query::kAnyHit ? statistics_.occlusion_rays : statistics_.nearest_rays) += query.rays.size();
+    return done ? watch_.unless_cancelled() : done;
+}
+
+template <class Trace>
+Result<Done> TwoLevel::counted(uint64_t& rays_of_a_kind, size_t rays, Trace&& trace) {
+    const Stopwatch watch;
+    Result<Done> done = trace();
+    rays_of_a_kind += rays;
     statistics_.seconds_trace += watch.seconds();
-    return watch_.unless_cancelled();
+    return done;
 }
 
 Result<Done> TwoLevel::intersect(RaySpan rays, const Exclusions& without, std::span<Hit> hits) {
-    return trace_nearest({rays, without, hits, {}, {}, {}});
+    return counted(statistics_.nearest_rays, rays.size(), [&] {
+        return trace_nearest({rays, without, hits, {}, {}, {}});
+    });
 }
 
 Result<Done> TwoLevel::trace_nearest(NearestQuery query) {
@@ -79,19 +85,22 @@ Result<Done> TwoLevel::all_hits(RaySpan rays, const Exclusions& without, const A
         return trace_nearest({some, also, hits, {}, {}, {}});
     };
     watch_.begin_call();
-    return trace_all_hits(tracing_, nearest, rays, without, all);
+    return counted(statistics_.nearest_rays, rays.size(),
+                   [&] { return trace_all_hits(tracing_, nearest, rays, without, all); });
 }
 
 Result<Done> TwoLevel::occluded(RaySpan rays, const Exclusions& without,
                                 std::span<uint8_t> occluded) {
-    if (without.sieves.pass_all())
-        return trace(OcclusionQuery{rays, without, occluded});
-    // Any hit that the kernel finds may not count, and then tells nothing of those before it.
-    std::vector<Hit> hits(rays.size());
-    if (Result<Done> done = trace_nearest({rays, without, hits, {}, {}, {}}); !done)
-        return done;
-    std::ranges::transform(hits, occluded.begin(), &Hit::is_hit);
-    return Done{};
+    return counted(statistics_.occlusion_rays, rays.size(), [&]() -> Result<Done> {
+        if (without.sieves.pass_all())
+            return trace(OcclusionQuery{rays, without, occluded});
+        // Any hit that the kernel finds may not count, and then tells nothing of those before it.
+        std::vector<Hit> hits(rays.size());
+        if (Result<Done> done = trace_nearest({rays, without, hits, {}, {}, {}}); !done)
+            return done;
+        std::ranges::transform(hits, occluded.begin(), &Hit::is_hit);
+        return Done{};
+    });
 }
 
 Result<Done> TwoLevel::intersect_noted(RaySpan rays, const Exclusions& without, std::span<Hit> hits,
@@ -99,8 +108,10 @@ Result<Done> TwoLevel::intersect_noted(RaySpan rays, const Exclusions& without, 
     assert(notes.leaf.empty() || notes.leaf.size() == rays.size());
     std::fill(notes.passes.begin(), notes.passes.end(), 0);
     std::fill(notes.flagged.begin(), notes.flagged.end(), 0);
-    if (Result<Done> done = trace_nearest({rays, without, hits, notes.passes, notes.flagged, {}});
-        !done)
+    const auto nearest = [&] {
+        return trace_nearest({rays, without, hits, notes.passes, notes.flagged, {}});
+    };
+    if (Result<Done> done = counted(statistics_.nearest_rays, rays.size(), nearest); !done)
         return done;
     parallel_for(notes.leaf.size(), 1024, [&](size_t first, size_t last) {
         for (size_t i = first; i < last; ++i)

@@ -77,6 +77,24 @@ TEST_F(TwoLevelGl, EqualsBruteForceBitForBit) {
     }
 }
 
+TEST_F(TwoLevelGl, CountsARayOnceByWhatItAsksFor) {
+    const Soup soup = test::random_soup(9, 500, 0.3);
+    const auto rays = test::rays_from_outside(3, 1000);
+    const std::vector<uint32_t> masks(rays.size(), 1);
+    const auto structure = build(soup, {});
+    ASSERT_TRUE(structure);
+    std::vector<uint8_t> occluded(rays.size());
+    Exclusions without;
+    without.sieves.masks = masks;
+    ASSERT_TRUE(ok(structure->occluded(rays, without, occluded)));
+    EXPECT_EQ(structure->statistics().occlusion_rays, rays.size());
+    EXPECT_EQ(structure->statistics().nearest_rays, 0u);
+    std::vector<Hit> hits(3 * rays.size());
+    std::vector<uint64_t> counts(rays.size());
+    ASSERT_TRUE(ok(structure->all_hits(rays, {}, {3, hits, counts})));
+    EXPECT_EQ(structure->statistics().nearest_rays, rays.size());
+}
+
 /// Every coordinate of these rays is exact at the corner, and none is along the way.
 TEST_F(TwoLevelGl, ARayFromFarAwayMeetsTheCornerOfTheScene) {
     const Soup soup = test::one_chunk({vec3(0), vec3(1, 0, 0), vec3(0, 1, 0)});
