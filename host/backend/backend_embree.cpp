@@ -21,10 +21,11 @@ namespace {
 struct Context {
     RTCIntersectContext base;  // first, because Embree hands its address to the filter
     const Exclusions* without; // of the rays of the task; null where they see everything
+    const double* begins;      // t of the rays of the task where Embree's is 0
     size_t first;              // the ray among them whose id is 0
     const Soup* soup;
 
-    Context(const Exclusions* excluded, size_t first_ray, const Soup& of);
+    Context(const Exclusions* excluded, const double* begins_, size_t first_ray, const Soup& of);
 
     bool counts(size_t ray, const Hit& hit) const {
         if (!without->skip.empty() && without->skip[ray] == hit.id)
@@ -41,17 +42,19 @@ struct Context {
 void refuse_excluded(const RTCFilterFunctionNArguments* a) {
     const Context& context = *reinterpret_cast<const Context*>(a->context);
     for (unsigned i = 0; i < a->N; ++i) {
-        const Hit hit{RTCRayN_tfar(a->ray, a->N, i),
+        const size_t ray = context.first + RTCRayN_id(a->ray, a->N, i);
+        const Hit hit{context.begins[ray] + RTCRayN_tfar(a->ray, a->N, i),
                       RTCHitN_u(a->hit, a->N, i),
                       RTCHitN_v(a->hit, a->N, i),
                       {RTCHitN_geomID(a->hit, a->N, i), RTCHitN_primID(a->hit, a->N, i)}};
-        if (a->valid[i] && !context.counts(context.first + RTCRayN_id(a->ray, a->N, i), hit))
+        if (a->valid[i] && !context.counts(ray, hit))
             a->valid[i] = 0;
     }
 }
 
-Context::Context(const Exclusions* excluded, size_t first_ray, const Soup& of)
-    : without(excluded), first(first_ray), soup(&of) {
+Context::Context(const Exclusions* excluded, const double* begins_, size_t first_ray,
+                 const Soup& of)
+    : without(excluded), begins(begins_), first(first_ray), soup(&of) {
     rtcInitIntersectContext(&base);
     if (without)
         base.filter = refuse_excluded;
@@ -124,7 +127,7 @@ public:
         const unsigned lane = i % N;
         if (!valid_[i] || RTCHitN_geomID(hit, N, lane) == RTC_INVALID_GEOMETRY_ID)
             return {};
-        return {RTCRayN_tfar(ray(i), N, lane),
+        return {begins_[i] + RTCRayN_tfar(ray(i), N, lane),
                 RTCHitN_u(hit, N, lane),
                 RTCHitN_v(hit, N, lane),
                 {RTCHitN_geomID(hit, N, lane), RTCHitN_primID(hit, N, lane)}};
@@ -135,7 +138,11 @@ private:
     RTCRayHitN* at(size_t i) { return reinterpret_cast<RTCRayHitN*>(&queries_[i / N]); }
     RTCRayN* ray(size_t i) { return RTCRayHitN_RayN(at(i), N); }
 
-    void put(size_t i, const Ray& from) {
+    /// Embree has no t below 0; a ray that begins there is moved on its line.
+    void put(size_t i, Ray from) {
+        begins_[i] = std::min(from.t_min, 0.0);
+        if (from.t_min < 0)
+            from = {from.at(from.t_min), 0, from.dir, from.t_max - from.t_min};
         valid_[i] = can_ask(from) ? -1 : 0;
         RTCRayN* to = ray(i);
         const unsigned lane = i % N;
@@ -157,7 +164,7 @@ private:
     template <class Call>
     void call(RTCScene scene, const Call& ask) {
         for (size_t i = 0; i < count_; i += N) {
-            Context context(sees_all_ ? nullptr : without_, i, soup_);
+            Context context(sees_all_ ? nullptr : without_, begins_.data(), i, soup_);
             context.base.flags = Calls<N>::kFlags;
             ask(scene, context, &valid_[i], queries_[i / N]);
         }
@@ -165,6 +172,7 @@ private:
 
     std::array<typename Calls<N>::Query, kRays / N> queries_;
     alignas(64) std::array<int, kRays> valid_;
+    std::array<double, kRays> begins_;
     const Soup& soup_;
     const Exclusions* without_ = nullptr;
     bool sees_all_ = true;

@@ -152,6 +152,34 @@ TEST(EmbreeBackend, AnswersAboutWhatTheCpuAnswers) {
     }
 }
 
+TEST(EmbreeBackend, AnswersRaysThatBeginBehindTheirOrigins) {
+    const Soup soup = random_soup(1, 3000);
+    std::vector<Ray> rays = random_rays(2, 5000);
+    for (size_t i = 0; i < rays.size(); ++i)
+        rays[i].t_min = i % 2 == 0 ? -2 : -1e300;
+    const std::unique_ptr<Backend> cpu = make_cpu_backend(soup);
+    std::vector<Hit> expected(rays.size()), found(rays.size());
+    std::vector<uint8_t> hidden(rays.size());
+    ASSERT_TRUE(cpu->intersect(rays, {}, expected));
+    for (const EmbreeMode mode : {EmbreeMode::Robust, EmbreeMode::Packets}) {
+        const Result<std::unique_ptr<Backend>> embree = make_embree_backend(soup, mode);
+        if (!embree)
+            GTEST_SKIP() << embree.error().message;
+        ASSERT_TRUE((*embree)->intersect(rays, {}, found));
+        ASSERT_TRUE((*embree)->occluded(rays, {}, hidden));
+        size_t other = 0, before = 0;
+        for (size_t i = 0; i < rays.size(); i += 2) {
+            other += expected[i].id != found[i].id || hidden[i] != expected[i].is_hit();
+            if (expected[i].id == found[i].id && found[i].is_hit()) {
+                EXPECT_NEAR(expected[i].t, found[i].t, 1e-2) << "ray " << i;
+                before += found[i].t < 0;
+            }
+        }
+        EXPECT_LT(other, rays.size() / 500);
+        EXPECT_GT(before, 100u);
+    }
+}
+
 TEST(TwoLevelBackend, HandsOnThePluginsSentence) {
     const Soup soup = random_soup(1, 10);
     BackendOptions options;
