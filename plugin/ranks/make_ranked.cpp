@@ -101,7 +101,7 @@ Result<std::unique_ptr<Structure>> make_structure(const Soup& soup, GlThread& gl
         return std::unique_ptr<Structure>(std::move(*local));
     return std::unique_ptr<Structure>(std::make_unique<RankedScene>(
         soup, RankedParts{std::move(*transport), std::move(*local), sharing.take_finder(),
-                          config.precision != OVC_PRECISION_FAST, LoopThreads::of_this_thread()}));
+                          LoopThreads::of_this_thread()}));
 }
 
 Result<ovc_plan> plan_structure(const Soup& soup, const DeviceInfo& device,

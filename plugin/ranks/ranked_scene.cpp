@@ -15,8 +15,7 @@ namespace ovc {
 RankedScene::RankedScene(const Soup& soup, RankedParts parts)
     : parts_(std::move(parts)),
       server_(*parts_.local, *parts_.transport, parts_.threads),
-      routing_{soup, parts_.certified, *parts_.finder, *parts_.transport,
-               [this] { return server_.is_idle(); }},
+      routing_{soup, *parts_.finder, *parts_.transport, [this] { return server_.is_idle(); }},
       routed_(parts_.transport->ranks()),
       call_(routing_, routed_) {}
 

@@ -18,7 +18,6 @@ struct RankedParts {
     std::unique_ptr<Transport> transport; // of this scene alone
     std::unique_ptr<Structure> local;     // has the pages of this rank
     std::unique_ptr<StopFinder> finder;
-    bool certified = true;
     LoopThreads* threads = nullptr; // that loops run on
 };
 

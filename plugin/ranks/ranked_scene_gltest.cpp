@@ -46,8 +46,8 @@ protected:
             ranks[rank].pages = local->scene().pages.size();
             ranks[rank].bytes = local->scene().level2_bytes();
             ranks[rank].scene = std::make_unique<RankedScene>(
-                soup, RankedParts{std::move(transports[rank]), std::move(local),
-                                  sharing.take_finder(), options.certify});
+                soup,
+                RankedParts{std::move(transports[rank]), std::move(local), sharing.take_finder()});
         }
         return ranks;
     }

@@ -211,7 +211,7 @@ Result<Done> RoutedCall::take(const Received& received) {
 /// Whether the hit comes before the ray's nearest so far, in the order of exact t, mesh and prim.
 bool RoutedCall::is_nearer(uint32_t ray, const Hit& hit) const {
     const Hit& best = rays_.hits[ray];
-    if (!best.is_hit() || hit.t != best.t || hit.id == best.id || !ranks_.certified)
+    if (!best.is_hit() || hit.t != best.t || hit.id == best.id)
         return hit.nearer_than(best);
     // Rounded, they are equal; the corners tell which comes first.
     const PreparedRay p(rays_.rays[ray]);

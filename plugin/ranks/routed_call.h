@@ -20,7 +20,6 @@ namespace ovc {
 /// What routed calls of a scene have in common.
 struct Routing {
     const Soup& soup; // whose corners decide between hits of equal t
-    bool certified;
     const StopFinder& finder;
     Transport& transport;
     std::function<bool()> is_idle; // whether this rank traces nothing just now
