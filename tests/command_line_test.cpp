@@ -158,6 +158,17 @@ TEST_F(CommandLine, TheCacheIsUsedRefreshedAndMended) {
     EXPECT_THAT(overcast("render box --cache file").output, HasSubstr("'file' is no folder"));
 }
 
+/// llvmpipe has no vectors of 512 bits for fragment kernels.
+TEST_F(CommandLine, AFragmentVariantIsAKernelAsAnyOther) {
+    const auto asked = [&](const std::string& kernel) {
+        return overcast("trace sphere-3 --any --log-level error " + kernel, "echo 0 0 9 0 0 -1 |");
+    };
+    const test::CommandResult result =
+        asked("--kernel-variant fragment,both-sides,registers=8,images");
+    EXPECT_EQ(result.exit_code, 0) << result.output;
+    EXPECT_EQ(result.output, asked("").output);
+}
+
 TEST_F(CommandLine, BadInputIsOneSentenceExitOneAndNothingWritten) {
     write("empty.ply", "");
     write("cut.ply", binary_ply_header(3, 1) + std::string(20, '\0'));

@@ -40,8 +40,10 @@ static bool needs_device(const BackendOptions& options) {
 
 void prepare_process(const BackendOptions& options) {
     // The thesis' systems have fragment kernels.
-    if (needs_device(options) && structure_of(options.kind) == OVC_STRUCTURE_TWO_LEVEL)
-        prepare_process(options.kernel);
+    if (!needs_device(options) || structure_of(options.kind) != OVC_STRUCTURE_TWO_LEVEL)
+        return;
+    const bool is_fragment = options.kernel_variant.starts_with("fragment");
+    prepare_process(is_fragment ? OVC_KERNEL_FRAGMENT : options.kernel);
 }
 
 DeviceOpening::DeviceOpening(const BackendOptions& options) : held_(std::make_shared<HeldLog>()) {
