@@ -86,6 +86,10 @@ def compare_hits(overcast, folder, scene, counts):
                 if hits != whole:
                     fail(f"{source}, {ranks} ranks, {own}: hits differ")
         print(f"same: hits of {scene} and of its file, {ranks} ranks", flush=True)
+        refused = run(ranks, [overcast, "trace", str(stored), "--ranks-own", "share"], wanted=1,
+                      input="no ray\n")
+        if "line 1" not in refused.stderr:
+            fail(f"no ray: {refused.stderr}")
 
 
 def side_by_side(*commands):

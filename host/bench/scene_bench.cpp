@@ -154,6 +154,7 @@ Result<Done> bench_soup(const SceneBench& job, const Scene& scene, const Camera&
     const Result<Done> done = run_contenders(*entrants, *workloads, scene.soup, judge, job.repeats,
                                              around.stop, observe, result);
     result.load_after = load_average();
+    Ranks::fail_all_unless(done);
     if (!done)
         return scene.on_disk ? scene.on_disk->checked(done) : done;
     return ranks ? end_calls(*ranks) : done;

@@ -88,6 +88,7 @@ public:
                     : "reading rays from the terminal, one a line: ox oy oz dx dy dz [tmin tmax]; "
                       "Ctrl-D ends them");
         Result<Done> done = trace_stream(**backend, STDIN_FILENO, STDOUT_FILENO, options_);
+        Ranks::fail_all_unless(done);
         if (done && ranks)
             done = end_calls(*ranks);
         if (!done)

@@ -8,23 +8,17 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <exception>
 #include <new>
 #include <string>
-#include <thread>
 
 /// Of several ranks, one that fails ends all, for the others would wait for it.
 static int fail(std::string_view sentence) {
-    const ovc::Ranks* const ranks = ovc::Ranks::of_run();
-    if (ranks && !ranks->is_first()) // what all of them have to say, the first one says
-        std::this_thread::sleep_for(std::chrono::milliseconds(500));
-    ovc::print_message(!ranks ? std::string(sentence)
-                              : fmt::format("{}: {}", ranks->name_of(ranks->rank()), sentence));
-    if (ranks)
-        ranks->end_all(ovc::kExitError);
+    if (const ovc::Ranks* const ranks = ovc::Ranks::of_run())
+        ranks->fail_all(sentence);
+    ovc::print_message(sentence);
     return ovc::kExitError;
 }
 

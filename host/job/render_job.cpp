@@ -282,7 +282,6 @@ static Result<int> render_others(const RenderJob& job, const RankBytes& there, W
     if (const Result<Done> opened = open_window(job, part->size, watchers); !opened)
         return opened.error();
     stats.scene_from_cache = cache.found();
-
     tell_of_up_left_out(job, *scene, log);
     if (const Result<Done> fine = check_frames(job, *scene); !fine)
         return fine.error();
@@ -305,9 +304,10 @@ static Result<int> render_others(const RenderJob& job, const RankBytes& there, W
     options.sample = {};
     Stage stage(job, *scene, pictures, std::move(*backend), options);
     Result<Done> done = render_shots(job, there, *part, stage, *scene, log, watchers, stats);
+    if (done)
+        done = pictures.check(*scene);
+    Ranks::fail_all_unless(done);
     if (!done)
-        return done.error();
-    if (done = pictures.check(*scene); !done)
         return done.error();
     add_what_backend_tells(job, *scene, stage, stats);
     return tell(job, total, scene->omissions, stats);

@@ -3,16 +3,20 @@
 #include "host/ranks/ranks.h"
 
 #include "host/backend/plugin_loader.h"
+#include "host/terminal/interrupt.h"
+#include "host/terminal/message.h"
 #include "plugin/overcast_ranks.h"
 
 #include <dlfcn.h>
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
+#include <thread>
 
 namespace ovc {
 
@@ -155,6 +159,18 @@ void Ranks::end_all(int code) const {
     std::fflush(nullptr);
     table_.abort(code);
     std::_Exit(code); // abort() does not return
+}
+
+void Ranks::fail_all(std::string_view sentence) const {
+    if (!is_first()) // what all of them have to say, the first one says
+        std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    print_message(fmt::format("{}: {}", name_of(rank()), sentence));
+    end_all(kExitError);
+}
+
+void Ranks::fail_all_unless(const Result<Done>& done) {
+    if (const Ranks* const ranks = of_run(); ranks && !done)
+        ranks->fail_all(done.error().message);
 }
 
 } // namespace ovc

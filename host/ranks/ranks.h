@@ -69,6 +69,11 @@ public:
     std::vector<uint32_t> first_ranks(ovc_scene_t* scene, std::span<const Ray> rays) const;
     /// Ends all processes at once, with this exit code.
     [[noreturn]] void end_all(int code) const;
+    /// Says what has failed here, and ends all processes, which would wait for this one.
+    [[noreturn]] void fail_all(std::string_view sentence) const;
+    /// Does so where this process is one of several and `done` an error: to be called before a
+    /// scene is destroyed, which waits for the other ranks.
+    static void fail_all_unless(const Result<Done>& done);
 
 private:
     explicit Ranks(const ovc_ranks& table) : table_(table) {}
