@@ -139,6 +139,7 @@ std::vector<Contender> contenders(const Job& job, const KdTree& tree, const Soup
         in_batches(kMaxFewRays, thread_count()),
         in_batches(kMaxFewRays + 1, 1),
         in_batches(kMaxFewRays + 1, thread_count()),
+        in_batches(kMaxFewRays + 1, job.threads),
         {fmt::format("gathered alone, {} threads", job.threads),
          [&](const RaySet& set, std::vector<Hit>& hits) {
              // This may be slow, so it gets a thirtieth of the rays.
