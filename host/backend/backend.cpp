@@ -19,7 +19,7 @@ Result<std::unique_ptr<Backend>> make_backend(const Soup& soup, const BackendOpt
     if (options.kind == BackendKind::CpuKdTree)
         return make_cpu_backend(soup, log);
     if (options.kind == BackendKind::Embree)
-        return make_embree_backend(soup, EmbreeMode::Robust);
+        return make_embree_backend(soup, EmbreeMode::Robust, log);
     ovc_result code = OVC_OK;
     Result<PluginDevice> device = opening.finish(log, code);
     if (device)

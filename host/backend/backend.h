@@ -160,7 +160,9 @@ std::unique_ptr<Backend> make_cpu_backend(const Soup& soup, const KdTree& tree,
 enum class EmbreeMode { Medium, High, Robust, Packets };
 
 /// Embree has floats only: world positions and rays are rounded to floats, and rays with numbers
-/// beyond 1.8e18 miss. Error: this program was built without Embree, or Embree cannot build.
-Result<std::unique_ptr<Backend>> make_embree_backend(const Soup& soup, EmbreeMode mode);
+/// beyond 1.8e18 miss. A warning in the log tells of triangles that it leaves out. Error: this
+/// program was built without Embree, or Embree cannot build.
+Result<std::unique_ptr<Backend>> make_embree_backend(const Soup& soup, EmbreeMode mode,
+                                                     const LogSink& log = {});
 
 } // namespace ovc

@@ -60,14 +60,15 @@ Context::Context(const Exclusions* excluded, const double* begins_, size_t first
         base.filter = refuse_excluded;
 }
 
-/// Returns false for rays that fail Embree's assertions: NaN, an empty range, numbers beyond its
-/// FLT_LARGE.
+/// Whether Embree takes such numbers: none beyond its FLT_LARGE, and no NaN.
+bool can_take(const dvec3& v) {
+    constexpr double kLarge = 1.844e18;
+    return max_component(glm::abs(v)) <= kLarge && is_finite(v);
+}
+
+/// Returns false for rays that fail Embree's assertions, as those with an empty range do.
 bool can_ask(const Ray& ray) {
-    constexpr double large = 1.844e18;
-    const auto within = [](const dvec3& v) {
-        return max_component(glm::abs(v)) <= large && is_finite(v);
-    };
-    return ray.valid() && within(ray.org) && within(ray.dir);
+    return ray.valid() && can_take(ray.org) && can_take(ray.dir);
 }
 
 /// The functions of Embree that trace N rays in one call.
@@ -226,6 +227,9 @@ public:
                                  code == RTC_ERROR_OUT_OF_MEMORY ? ", out of memory" : "")};
     }
 
+    /// Returns how many triangles Embree leaves out.
+    uint64_t left_out() const { return left_out_; }
+
     Result<Done> intersect(std::span<const Ray> rays, const Exclusions& without,
                            std::span<Hit> hits) override {
         assert(hits.size() == rays.size());
@@ -259,9 +263,13 @@ private:
             mesh, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(vec3), corners));
         auto* indices = static_cast<uint32_t*>(rtcSetNewGeometryBuffer(
             mesh, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(uint32_t), corners / 3));
-        for (size_t i = 0; positions && indices && i < corners; ++i) {
-            positions[i] = vec3(chunk.triangle(uint32_t(i / 3))[i % 3]);
-            indices[i] = uint32_t(i);
+        for (uint32_t t = 0; positions && indices && t < chunk.size(); ++t) {
+            const Triangle triangle = chunk.triangle(t);
+            for (size_t i = 0; i < 3; ++i) {
+                positions[3 * size_t(t) + i] = vec3(triangle[i]);
+                indices[3 * size_t(t) + i] = 3 * t + uint32_t(i);
+            }
+            left_out_ += !std::ranges::all_of(triangle, can_take);
         }
         rtcCommitGeometry(mesh);
         rtcAttachGeometry(scene_, mesh);
@@ -313,18 +321,25 @@ private:
     EmbreeMode mode_;
     RTCDevice device_;
     RTCScene scene_;
+    uint64_t left_out_ = 0;
     ovc_statistics statistics_{};
 };
 
 } // namespace
 
-Result<std::unique_ptr<Backend>> make_embree_backend(const Soup& soup, EmbreeMode mode) {
+Result<std::unique_ptr<Backend>> make_embree_backend(const Soup& soup, EmbreeMode mode,
+                                                     const LogSink& log) {
     for (const Chunk& chunk : soup.chunks)
         if (chunk.size() > 0xffffffffu / 3)
             return Error{"Embree takes meshes of at most 1,431,655,765 triangles"};
     auto backend = std::make_unique<EmbreeBackend>(soup, mode);
     if (const Result<Done> built = backend->built(); !built)
         return built.error();
+    if (backend->left_out() > 0)
+        say(log, LogLevel::Warning,
+            fmt::format("Embree leaves out {} triangles with a corner that is not finite or lies "
+                        "beyond 1.8e18",
+                        backend->left_out()));
     return Result<std::unique_ptr<Backend>>(std::move(backend));
 }
 

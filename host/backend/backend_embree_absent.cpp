@@ -4,7 +4,7 @@
 
 namespace ovc {
 
-Result<std::unique_ptr<Backend>> make_embree_backend(const Soup&, EmbreeMode) {
+Result<std::unique_ptr<Backend>> make_embree_backend(const Soup&, EmbreeMode, const LogSink&) {
     return Error{"this program was built without Embree (libembree-dev, -DOVC_EMBREE=ON)"};
 }
 

@@ -3,6 +3,7 @@
 // it fails clearly.
 #include "host/backend/backend.h"
 #include "host/backend/plugin_loader.h"
+#include "kdtree/test_soups.h"
 
 #include <gmock/gmock.h>
 
@@ -149,6 +150,27 @@ TEST(EmbreeBackend, AnswersAboutWhatTheCpuAnswers) {
         }
         std::ranges::fill(skip, TriangleId{});
         EXPECT_EQ((*embree)->statistics().nearest_rays, 2 * rays.size());
+    }
+}
+
+TEST(EmbreeBackend, SaysWhatItLeavesOut) {
+    std::vector<std::string> told;
+    const LogSink log = [&](LogLevel, const std::string& message) { told.push_back(message); };
+    const auto make = [&](float corner) {
+        std::vector<vec3> corners{vec3(0), vec3(1, 0, 0), vec3(0, 1, 0)};
+        corners.insert(corners.end(), {vec3(0), vec3(corner, 0, 0), vec3(0, corner, 0)});
+        const Soup soup = test::one_chunk(std::move(corners));
+        return make_embree_backend(soup, EmbreeMode::Robust, log);
+    };
+    if (const auto embree = make(2); !embree)
+        GTEST_SKIP() << embree.error().message;
+    EXPECT_TRUE(told.empty());
+    for (const float corner : {3e18f, INFINITY, NAN}) {
+        told.clear();
+        ASSERT_TRUE(make(corner));
+        ASSERT_EQ(told.size(), 1u) << corner;
+        EXPECT_EQ(told[0], "Embree leaves out 1 triangles with a corner that is not finite or lies "
+                           "beyond 1.8e18");
     }
 }
 

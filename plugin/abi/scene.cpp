@@ -41,6 +41,7 @@ void build(ovc_scene_t& scene, BuildProgress* progress) {
     if (progress)
         progress->finish(); // as in update()
     scene.structure = std::move(*built);
+    scene.single_rays.count_anew();
     scene.config.saved = nullptr; // the meshes may change now
     scene.config.saved_bytes = 0;
 }

@@ -50,6 +50,14 @@ public:
                 std::this_thread::sleep_for(std::chrono::microseconds(100));
     }
 
+    /// Forgets what was counted. No call is under way.
+    void count_anew() {
+        for (Shard& shard : shards_)
+            for (std::atomic<uint64_t>* count : {&shard.nearest, &shard.occlusion, &shard.invalid,
+                                                 &shard.in_batches, &shard.gathered})
+                *count = 0;
+    }
+
     /// One call. serve() waits until it is destroyed.
     class Call {
     public:
@@ -80,21 +88,25 @@ public:
         /// Answers a batch where that is sooner than in the scene's turn; else returns false.
         bool nearest(RaySpan rays, const Exclusions& without, std::span<Hit> hits) {
             uint64_t invalid = 0;
-            return structure_ && structure_->intersect_few(rays, without, hits, invalid) &&
-                   count_batch(shard_.nearest, rays.size(), invalid);
+            const bool done = structure_ && structure_->intersect_few(rays, without, hits, invalid);
+            if (done)
+                count_batch(shard_.nearest, rays.size(), invalid);
+            return done;
         }
         bool occluded(RaySpan rays, const Exclusions& without, std::span<uint8_t> occluded) {
             uint64_t invalid = 0;
-            return structure_ && structure_->occluded_few(rays, without, occluded, invalid) &&
-                   count_batch(shard_.occlusion, rays.size(), invalid);
+            const bool done =
+                structure_ && structure_->occluded_few(rays, without, occluded, invalid);
+            if (done)
+                count_batch(shard_.occlusion, rays.size(), invalid);
+            return done;
         }
 
     private:
-        bool count_batch(std::atomic<uint64_t>& rays, uint64_t count, uint64_t invalid) {
+        void count_batch(std::atomic<uint64_t>& rays, uint64_t count, uint64_t invalid) {
             rays += count;
             shard_.in_batches += count;
             shard_.invalid += invalid;
-            return true;
         }
 
         uint64_t answer_on_cpu(SingleRay& asked) {

@@ -28,9 +28,8 @@ namespace ovc {
 
 class LeafStore;
 
-/// Rays that the CPU may answer before a pass of the kernel has begun: a call of the kernel takes
-/// some 100 us, whatever it is asked, and a ray on the CPU 0.2 to 2 (docs/benchmarks.md, "Single
-/// rays").
+/// So many rays are answered by the CPU about when a pass of the kernel has begun: that takes 75 us
+/// and more, whatever is asked, and a ray on the CPU 0.2 to 2 (docs/benchmarks.md, "Single rays").
 inline constexpr size_t kMaxFewRays = 64;
 
 /// Answers rays through a soup. It takes one call at a time, except where a function says

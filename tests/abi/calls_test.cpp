@@ -295,6 +295,24 @@ TEST_F(Calls, BatchesOfManyThreadsAreRefusedEachWithItsMessage) {
     });
 }
 
+TEST_F(Calls, RaysAreCountedFromTheCommitThatBuilds) {
+    const Soup soup = test::closed_grid(40);
+    const auto scene = committed(soup);
+    const auto rays = test::unpleasant_rays(soup, 21, 10);
+    nearest(scene, rays);
+    ovc_hit hit{};
+    ASSERT_EQ(api().intersect1(scene.get(), as_abi(rays), &hit, nullptr), OVC_OK);
+    const double aside[12] = {1, 0, 0, 5, 0, 1, 0, 0, 0, 0, 1, 0};
+    const ovc_instance instance{sizeof(ovc_instance), 0, 0, aside};
+    ASSERT_EQ(api().add_instance(scene.get(), &instance, nullptr), OVC_OK) << error();
+    ASSERT_EQ(api().commit(scene.get()), OVC_OK) << error();
+    auto statistics = sized<ovc_statistics>();
+    ASSERT_EQ(api().statistics(scene.get(), &statistics), OVC_OK);
+    ASSERT_EQ(statistics.updates, 0u) << "it is built anew";
+    EXPECT_EQ(statistics.nearest_rays, 0u);
+    EXPECT_EQ(statistics.single_rays, 0u);
+}
+
 TEST_F(Calls, ASingleRayDoesNotSeeWhatItSkips) {
     const Soup soup = test::closed_grid(30);
     const auto scene = committed(soup);
