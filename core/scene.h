@@ -281,8 +281,8 @@ struct Light {
 };
 
 /// The image is a window at the end of `direction` from the eye, `right` wide and `up` high, and of
-/// any handedness. With `orthographic`, rays begin in the
-/// window's plane through the eye, and all go along `direction`.
+/// any handedness. With `orthographic`, rays begin in the window's plane through the eye, and all
+/// go along `direction`.
 struct ImageWindow {
     /// How the picture is bent, as by POV-Ray's cameras of these names; Flat is not bent. All
     /// others cover `angle` and `vertical_angle`, and take only the shape from `right` and `up`.

@@ -30,7 +30,7 @@ double cosine(double degrees) {
 }
 
 /// Returns what v4's "power" or "illuminance" multiplies a light's color by. of_one: what a light
-/// of color 1 gives. A colour in rgb counts as it is, as in pbrt.
+/// of color 1 gives. A color in rgb counts as it is, as in pbrt.
 float factor_of(const Parameters& p, std::string_view name, double of_one) {
     const double wanted = p.number(name, -1);
     return wanted > 0 ? float(wanted / of_one) : 1;
