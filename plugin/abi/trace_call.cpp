@@ -14,12 +14,19 @@ namespace {
 // Calls of more rays fill a pass of the kernel alone.
 constexpr size_t kMaxJoinedRays = 4096;
 
+/// Whether another thread, or another way, may answer the call: nobody is asked or told anything
+/// meanwhile. The thread that is inside the scene's own stream waits for nothing, but is refused.
+bool is_plain(ovc_scene scene, const RayCall& call) {
+    const ovc_query& query = call.query;
+    return !call.max_hits && !query.filter && !query.progress &&
+           !notes_of(query, call.rays.size()).any() &&
+           scene->streaming != std::this_thread::get_id();
+}
+
 /// Answers a batch that is not worth a call of the kernel, beside other calls. Returns false where
 /// it is to be traced like any other.
 bool answer_few(ovc_scene scene, const RayCall& call) {
-    if (call.rays.size() > kMaxFewRays || call.max_hits || call.query.filter ||
-        call.query.progress || notes_of(call.query, call.rays.size()).any() ||
-        scene->streaming == std::this_thread::get_id())
+    if (call.rays.size() > kMaxFewRays || !is_plain(scene, call))
         return false;
     SingleRays::Call few(scene->single_rays);
     std::vector<Hit> after;
@@ -28,14 +35,11 @@ bool answer_few(ovc_scene scene, const RayCall& call) {
                         : few.nearest(call.rays, without, call.hits);
 }
 
-/// Whether the call may be one of several in a pass: whoever traces it knows nothing of its thread,
-/// and in certified precision it makes no difference which rays share a pass.
+/// Whether the call may be one of several in a pass. In certified precision it makes no difference
+/// which rays share it.
 bool may_join(ovc_scene scene, const RayCall& call) {
-    const ovc_query& query = call.query;
-    return call.rays.size() <= kMaxJoinedRays && !call.max_hits && !query.masks && !query.filter &&
-           !query.progress && !notes_of(query, call.rays.size()).any() &&
-           scene->config.precision == OVC_PRECISION_CERTIFIED &&
-           scene->streaming != std::this_thread::get_id();
+    return call.rays.size() <= kMaxJoinedRays && is_plain(scene, call) && !call.query.masks &&
+           scene->config.precision == OVC_PRECISION_CERTIFIED;
 }
 
 /// Answers those of the calls that ask for any hit, or those that ask for the nearest, at once.
