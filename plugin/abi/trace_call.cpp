@@ -15,7 +15,7 @@ namespace {
 constexpr size_t kMaxJoinedRays = 4096;
 
 /// Whether another thread, or another way, may answer the call: nobody is asked or told anything
-/// meanwhile. The thread that is inside the scene's own stream waits for nothing, but is refused.
+/// meanwhile. A thread inside the scene's own stream must be refused, so its calls are not.
 bool is_plain(ovc_scene scene, const RayCall& call) {
     const ovc_query& query = call.query;
     return !call.max_hits && !query.filter && !query.progress &&

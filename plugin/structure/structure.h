@@ -77,10 +77,12 @@ public:
     /// Answer at most kMaxFewRays rays on the CPU, where that is sooner than intersect() and
     /// occluded() are: with the same bits, from any thread and beside all other calls. Add to
     /// `invalid` how many rays are. Return false, having done nothing, where it is not sooner.
-    virtual bool intersect_few(RaySpan, const Exclusions&, std::span<Hit>, uint64_t&) const {
+    virtual bool intersect_few(RaySpan, const Exclusions&, std::span<Hit>,
+                               [[maybe_unused]] uint64_t& invalid) const {
         return false;
     }
-    virtual bool occluded_few(RaySpan, const Exclusions&, std::span<uint8_t>, uint64_t&) const {
+    virtual bool occluded_few(RaySpan, const Exclusions&, std::span<uint8_t>,
+                              [[maybe_unused]] uint64_t& invalid) const {
         return false;
     }
     /// Sets ranks[i] to the rank whose pages ray i comes by first, of those that no other rank has;

@@ -143,7 +143,7 @@ bool TwoLevel::occluded_on_cpu(const Ray& ray, const Exclusion& without,
 }
 
 template <class Query>
-bool TwoLevel::trace_few(const Query& query, uint64_t& invalid) const {
+bool TwoLevel::answer_few(const Query& query, uint64_t& invalid) const {
     assert(query.rays.size() <= kMaxFewRays);
     if (!has_cpu_tree() || !options_.certify || options_.tell_active ||
         !query.without.sieves.pass_all())
@@ -158,12 +158,12 @@ bool TwoLevel::trace_few(const Query& query, uint64_t& invalid) const {
 
 bool TwoLevel::intersect_few(RaySpan rays, const Exclusions& without, std::span<Hit> hits,
                              uint64_t& invalid) const {
-    return trace_few(NearestQuery{rays, without, hits, {}, {}, {}}, invalid);
+    return answer_few(NearestQuery{rays, without, hits, {}, {}, {}}, invalid);
 }
 
 bool TwoLevel::occluded_few(RaySpan rays, const Exclusions& without, std::span<uint8_t> occluded,
                             uint64_t& invalid) const {
-    return trace_few(OcclusionQuery{rays, without, occluded}, invalid);
+    return answer_few(OcclusionQuery{rays, without, occluded}, invalid);
 }
 
 Result<Done> TwoLevel::stream(StreamHost& host) {

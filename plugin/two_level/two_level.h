@@ -71,7 +71,7 @@ private:
     Result<Done> trace(const Query& query);
     Result<Done> trace_nearest(NearestQuery query);
     template <class Query>
-    bool trace_few(const Query& query, uint64_t& invalid) const;
+    bool answer_few(const Query& query, uint64_t& invalid) const;
     /// Calls trace() and counts it as a call with so many rays.
     template <class Trace>
     Result<Done> counted(uint64_t& rays_of_a_kind, size_t rays, Trace&& trace);
