@@ -6,8 +6,8 @@
 #include "core/system/parallel.h"
 #include "core/system/stopwatch.h"
 #include "plugin/fallback/exact_fallback.h"
+#include "plugin/resolve/candidates.h"
 #include "plugin/thesis/queued/hittable.h"
-#include "plugin/two_level/candidates.h"
 #include "shaders/layout.h"
 
 #include <algorithm>

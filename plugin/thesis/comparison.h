@@ -4,9 +4,9 @@
 #pragma once
 
 #include "plugin/build/built_scene.h"
+#include "plugin/resolve/query.h"
 #include "plugin/structure/structure.h"
 #include "plugin/thesis/runner.h"
-#include "plugin/two_level/query.h"
 
 #include <memory>
 

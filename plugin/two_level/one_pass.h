@@ -4,8 +4,8 @@
 // is resolved and the one behind is made ready, so that the kernel never waits for the host.
 #pragma once
 
+#include "plugin/resolve/resolve.h"
 #include "plugin/two_level/pass_runner.h"
-#include "plugin/two_level/resolve.h"
 
 #include <algorithm>
 #include <cassert>

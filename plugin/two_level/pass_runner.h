@@ -8,7 +8,7 @@
 #include "gpu/trace/tracer.h"
 #include "gpu/tuning/device_tuning.h"
 #include "plugin/build/update_scene.h"
-#include "plugin/two_level/tracing.h"
+#include "plugin/resolve/tracing.h"
 
 #include <algorithm>
 #include <array>

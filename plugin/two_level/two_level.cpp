@@ -5,7 +5,7 @@
 #include "core/system/stopwatch.h"
 #include "plugin/build/build_scene.h"
 #include "plugin/build/saved_levels.h"
-#include "plugin/two_level/all_hits.h"
+#include "plugin/resolve/all_hits.h"
 #include "plugin/two_level/mixed_stream.h"
 #include "plugin/two_level/one_pass.h"
 #include "plugin/two_level/wave_round.h"

@@ -6,9 +6,9 @@
 
 #include "core/system/log.h"
 #include "plugin/leaf_store/leaf_store.h"
+#include "plugin/resolve/query.h"
 #include "plugin/structure/structure.h"
 #include "plugin/two_level/pass_runner.h"
-#include "plugin/two_level/query.h"
 
 #include <memory>
 #include <span>

@@ -3,9 +3,9 @@
 // the next pass, the others wait for theirs.
 #pragma once
 
+#include "plugin/resolve/resolve.h"
+#include "plugin/resolve/sifting.h"
 #include "plugin/two_level/pass_runner.h"
-#include "plugin/two_level/resolve.h"
-#include "plugin/two_level/sifting.h"
 #include "plugin/two_level/waiting.h"
 
 #include <algorithm>

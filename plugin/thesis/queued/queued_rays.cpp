@@ -5,7 +5,7 @@
 
 #include "core/system/parallel.h"
 #include "plugin/fallback/exact_fallback.h"
-#include "plugin/two_level/candidates.h"
+#include "plugin/resolve/candidates.h"
 
 #include <algorithm>
 #include <cassert>

@@ -4,8 +4,8 @@
 
 #include "core/stream/backlog.h"
 #include "core/system/stopwatch.h"
+#include "plugin/resolve/query.h"
 #include "plugin/thesis/queued/queued_rays.h"
-#include "plugin/two_level/query.h"
 
 #include <algorithm>
 #include <numeric>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "plugin/two_level/sifting.h"
+#include "plugin/resolve/sifting.h"
 
 #include <algorithm>
 #include <cassert>

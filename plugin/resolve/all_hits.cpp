@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "plugin/two_level/all_hits.h"
+#include "plugin/resolve/all_hits.h"
 
 #include "core/system/parallel.h"
-#include "plugin/two_level/gathered_hits.h"
-#include "plugin/two_level/sifting.h"
+#include "plugin/resolve/gathered_hits.h"
+#include "plugin/resolve/sifting.h"
 
 #include <algorithm>
 #include <cassert>

@@ -7,7 +7,7 @@
 #include "core/exclusions.h"
 #include "core/ray_span.h"
 #include "core/result.h"
-#include "plugin/two_level/tracing.h"
+#include "plugin/resolve/tracing.h"
 
 #include <functional>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The hits are found in any order, then sorted: doubles tell most pairs apart, and exact arithmetic
 // the others.
-#include "plugin/two_level/gathered_hits.h"
+#include "plugin/resolve/gathered_hits.h"
 
 #include "core/exact/refined.h"
 #include "kdtree/approach.h"

@@ -9,9 +9,9 @@
 #include "core/system/parallel.h"
 #include "gpu/trace/tracer.h"
 #include "plugin/fallback/exact_fallback.h"
-#include "plugin/two_level/candidates.h"
-#include "plugin/two_level/query.h"
-#include "plugin/two_level/tracing.h"
+#include "plugin/resolve/candidates.h"
+#include "plugin/resolve/query.h"
+#include "plugin/resolve/tracing.h"
 
 #include <algorithm>
 #include <array>
