@@ -6,6 +6,7 @@
 #include "core/build_progress.h"
 #include "core/numbering.h"
 #include "core/soup.h"
+#include "core/system/line_allocator.h"
 #include "kdtree/partition.h"
 #include "shaders/layout.h"
 
@@ -19,8 +20,11 @@ namespace ovc {
 /// The texels of a page's header and root, by which a tree over pages is built.
 inline constexpr size_t kHeadTexels = (OVC_ROOT_UNIT + 1) * OVC_UNIT_TEXELS;
 
+/// Units that each lie in a cache line of their own.
+using Texels = std::vector<uvec4, LineAllocator<uvec4>>;
+
 struct Page {
-    std::vector<uvec4> texels;         // of a page that was built; empty if they are borrowed
+    Texels texels;                     // of a page that was built; empty if they are borrowed
     std::span<const uvec4> borrowed{}; // the owner keeps them alive and unchanged
     uint32_t depth = 0;                // nodes on the longest way down
     float built_cost = 0;              // of a ray before the first refit (refit.h); 0: none yet

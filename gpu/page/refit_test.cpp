@@ -93,7 +93,7 @@ test::NamedSoup random_triangles() {
 
 TEST_P(Refit, OfWhatHasNotMovedChangesNothing) {
     OnePage one(GetParam()().soup);
-    const std::vector<uvec4> before = one.page.texels;
+    const Texels before = one.page.texels;
     const NumberSet none(one.numbers.count());
     for (const NumberSet* moved : {&none, (const NumberSet*)nullptr}) {
         const auto cost = one.refit(moved);

@@ -7,6 +7,7 @@
 #include "core/result.h"
 #include "core/soup.h"
 #include "gpu/bvh/pairs.h"
+#include "gpu/page/page.h"
 #include "kdtree/partition.h"
 #include "plugin/overcast.h"
 
@@ -17,8 +18,6 @@
 #include <vector>
 
 namespace ovc::thesis {
-
-using Texels = std::vector<uvec4>;
 
 struct System {
     Texels texels;
