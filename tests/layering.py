@@ -33,6 +33,7 @@ PARTS = {
     "gpu/page": {"gpu/bvh", "gpu/frame"},
     "gpu/late": {"gpu/gl", "gpu/trace"},
     "gpu/tuning": {"gpu/gl"},
+    "gpu/walk": {"gpu/bvh", "gpu/frame", "gpu/page", "gpu/trace"},
     "gpu/trace": {"gpu/budget", "gpu/driver", "gpu/frame", "gpu/gl", "gpu/page", "gpu/tuning"},
     "plugin/structure": {"plugin"},
     "plugin/abi": {"plugin", "plugin/structure", "plugin/leaf_store"},
