@@ -44,6 +44,16 @@ void write(ResumedRay& to, const LocalRay& ray, uint32_t asks) {
     to = {ray, asks & ~OVC_RAY_ANY_HIT, {}};
 }
 
+} // namespace
+
+RayState RayStates::state(int lane) const {
+    const auto vector = [&](const auto& v) { return dvec3(v[0][lane], v[1][lane], v[2][lane]); };
+    return {{vector(rays.org), rays.from[lane], vector(rays.dir), rays.t_max[lane]},
+            {},
+            skip[size_t(lane)],
+            asks[size_t(lane)]};
+}
+
 LanesFrame lanes_frame(const Leaf& leaf) {
     LanesFrame frame;
     frame.box = LanesBox(leaf.box);
@@ -56,8 +66,7 @@ LanesFrame lanes_frame(const Leaf& leaf) {
     return frame;
 }
 
-/// Returns the ray of a lane as local_ray() does.
-LocalRay ray_of(const LocalRows& local, int lane) {
+LocalRay local_ray_in(const LocalRows& local, int lane) {
     static_assert(sizeof(local.rows[0]) == sizeof(LocalRay) &&
                   offsetof(LocalRay, org) == LocalRows::kOrg * sizeof(float) &&
                   offsetof(LocalRay, t_end) == LocalRows::kEnd * sizeof(float) &&
@@ -68,14 +77,23 @@ LocalRay ray_of(const LocalRows& local, int lane) {
     return ray;
 }
 
-} // namespace
-
-RayState RayStates::state(int lane) const {
-    const auto vector = [&](const auto& v) { return dvec3(v[0][lane], v[1][lane], v[2][lane]); };
-    return {{vector(rays.org), rays.from[lane], vector(rays.dir), rays.t_max[lane]},
-            {},
-            skip[size_t(lane)],
-            asks[size_t(lane)]};
+void to_tree_frame(const LanesFrame& scene, const Portal* way_in, const RayStates& states,
+                   uint32_t which, LocalRows& local) {
+    if (!way_in) {
+        std::array<uint32_t, RayLanes::kCount> words;
+        for (size_t lane = 0; lane < words.size(); ++lane)
+            words[lane] = std::min<uint32_t>(states.skip[lane], OVC_SKIPS_NONE) |
+                          (states.asks[lane] & OVC_RAY_ANY_HIT);
+        to_frame(scene, states.rays, words.data(), local);
+        return;
+    }
+    for (; which != 0; which &= which - 1) {
+        const int lane = std::countr_zero(which);
+        const RayState state = states.state(lane);
+        LocalTime unused;
+        const LocalRay ray = local_ray(*way_in, state.ray, state.skip, state.any_hit(), unused);
+        std::memcpy(local.rows[lane], &ray, sizeof(ray));
+    }
 }
 
 void SentRays::reset(const RayForm& form, size_t rays) {
@@ -107,34 +125,22 @@ void SentRays::set_size(size_t rays) {
 }
 
 size_t SentRays::put(size_t at, const RayStates& states, uint32_t which) {
-    const bool in_lanes = form_.kind != RayForm::Kind::World && !form_.way_in;
+    const bool is_local = form_.kind != RayForm::Kind::World;
     LocalRows local;
-    if (in_lanes) {
-        std::array<uint32_t, RayLanes::kCount> words;
-        for (size_t lane = 0; lane < words.size(); ++lane)
-            words[lane] = std::min<uint32_t>(states.skip[lane], OVC_SKIPS_NONE) |
-                          (states.asks[lane] & OVC_RAY_ANY_HIT);
-        to_frame(frame_, states.rays, words.data(), local);
-    }
+    if (is_local)
+        to_tree_frame(frame_, form_.way_in, states, which, local);
     // What most calls are made of: eight rays as they are.
     auto* const rows = std::get_if<PagedVector<LocalRay>>(&rays_);
-    if (rows && in_lanes && which == RayLanes::first(RayLanes::kCount)) {
+    if (rows && which == RayLanes::first(RayLanes::kCount)) {
         std::memcpy(static_cast<void*>(&(*rows)[at]), local.rows, sizeof(local.rows));
         return RayLanes::kCount;
     }
     size_t i = at;
     const auto put_one = [&](auto& all, int lane) {
-        const uint32_t skip = states.skip[size_t(lane)], asks = states.asks[size_t(lane)];
-        if constexpr (is_world<decltype(all)>) {
+        if constexpr (is_world<decltype(all)>)
             all[i] = states.state(lane);
-        } else {
-            LocalTime unused;
-            write(all[i],
-                  in_lanes ? ray_of(local, lane)
-                           : local_ray(*form_.way_in, states.state(lane).ray, skip,
-                                       (asks & OVC_RAY_ANY_HIT) != 0, unused),
-                  asks);
-        }
+        else
+            write(all[i], local_ray_in(local, lane), states.asks[size_t(lane)]);
         ++i;
     };
     std::visit(

@@ -52,6 +52,16 @@ struct RayStates {
     RayState state(int lane) const;
 };
 
+/// Returns the frame of a leaf for to_frame().
+LanesFrame lanes_frame(const Leaf& leaf);
+
+/// Fills in the rows of the states in the frame of a top-level tree: that of the scene or, where
+/// there is one, that behind the way in. Rows of states that are not set may hold anything.
+void to_tree_frame(const LanesFrame& scene, const Portal* way_in, const RayStates& states,
+                   uint32_t which, LocalRows& local);
+/// Returns the ray in a row.
+LocalRay local_ray_in(const LocalRows& local, int lane);
+
 /// How a kernel wants its rays. The frames outlive all that is sent so.
 struct RayForm {
     enum class Kind {

@@ -45,12 +45,14 @@ inline Candidates candidates_of(const Answer& answer) {
 template <class Query>
 class Resolver {
 public:
-    /// are_whole: no answer is that of a ray that waits, or has waited, for a page.
-    Resolver(const Tracing& tracing, const Query& query, bool are_whole)
+    /// are_whole: no answer is that of a ray that waits, or has waited, for a page. alone: the
+    /// thread that asks does all; few rays would wait for other threads longer than these help.
+    Resolver(const Tracing& tracing, const Query& query, bool are_whole, bool alone = false)
         : tracing_(tracing),
           scene_(tracing.scene),
           query_(query),
           are_whole_(are_whole),
+          alone_(alone),
           may_have_hit_(!are_whole || !scene_.far.empty()),
           scene_leaf_(scene_.top.scene_in(scene_.level1.bounds)),
           ahead_(scene_ahead(scene_)) {}
@@ -66,6 +68,14 @@ public:
     const Query& query() const { return query_; }
     /// Replaces the query where its arrays have moved or have more rays than before.
     void show(const Query& query) { query_ = query; }
+
+    Exclusion exclusion(uint32_t i) const {
+        Exclusion without = query_.without[i];
+        without.after.is_certain = query_.has_own_places;
+        return without;
+    }
+    /// Enters the answer to ray i.
+    void enter(uint32_t i, const Hit& hit) { query_.set(i, hit); }
 
     /// Calls body(states, some, first) for these rays, by as many as there are lanes; states: those
     /// in which they set out; first: the place of the first.
@@ -120,12 +130,12 @@ public:
         return sent.put(at, states, which);
     }
 
-    /// Enters the kernel's answers from the `first` on, one per ray, as far as they are certain or
-    /// exact arithmetic decides them. takes(i, answer) -> bool is asked before; false leaves the
-    /// answer alone. go_on(i, key, limit) is called where a page that is not resident may hold a
-    /// hit before `limit`; key: that of the link that leads there.
-    template <class Takes, class GoOn>
-    void resolve(std::span<const uint32_t> rays, const Answers& answers, size_t first,
+    /// Enters answers of a kernel, or others like them, from the `first` on, one per ray, as far as
+    /// they are certain or exact arithmetic decides them. takes(i, answer) -> bool is asked before;
+    /// false leaves the answer alone. go_on(i, key, limit) is called where a page that is not
+    /// resident may hold a hit before `limit`; key: that of the link that leads there.
+    template <class SomeAnswers, class Takes, class GoOn>
+    void resolve(std::span<const uint32_t> rays, const SomeAnswers& answers, size_t first,
                  Takes&& takes, GoOn&& go_on) {
         if (!tracing_.watch.keeps_on())
             return;
@@ -194,21 +204,6 @@ public:
         enter_all(decided);
     }
 
-    /// Answers all rays of the query, which are few, for good. One thread walks the tree for all of
-    /// them: it would wait for others longer than they help it.
-    void answer_without_kernel() {
-        std::vector<uint32_t> rays(query_.rays.size());
-        std::iota(rays.begin(), rays.end(), 0u);
-        std::vector<InDoubt> asked;
-        in_lanes(rays, [&](RayStates& states, std::span<const uint32_t> some, size_t) {
-            for (uint32_t lanes = begins(states, some); lanes != 0; lanes &= lanes - 1)
-                asked.push_back({some[size_t(std::countr_zero(lanes))], kBeforeAll.t});
-        });
-        Decided decided;
-        fall_back(asked, decided, /* worth= */ asked.size() + 1);
-        enter_all(decided);
-    }
-
     /// Answers ray i for good, whatever it has met, unless the call is cancelled. That is asked for
     /// each ray, because some take a hundred times as long as most.
     void answer_exactly(uint32_t i) {
@@ -247,12 +242,6 @@ private:
             states.skip[lane] = scene_.number_to_skip(ray, without);
         }
         return states;
-    }
-
-    Exclusion exclusion(uint32_t i) const {
-        Exclusion without = query_.without[i];
-        without.after.is_certain = query_.has_own_places;
-        return without;
     }
 
     /// Returns a t before which ray i, of which this is the answer, hits nothing.
@@ -335,7 +324,8 @@ private:
 
     static constexpr size_t kAhead = 8; // answers between fetching triangles and reading them
     /// Fetches the triangles of an answer that is to be resolved soon.
-    void fetch_ahead(const Answers& answers, size_t j) const {
+    template <class SomeAnswers>
+    void fetch_ahead(const SomeAnswers& answers, size_t j) const {
         const uint32_t name = answers.names[j];
         if ((name & OVC_SAYS_MORE) == 0) {
             if (!Query::kAnyHit) // else the corners will not be read
@@ -466,11 +456,10 @@ private:
             count_flagged(i);
     }
 
-    /// Answers the rays exactly, in parallel where there are as many as `worth`. Those that meet
-    /// many triangles are traced together.
-    void fall_back(std::span<const InDoubt> rays, Decided& decided, size_t worth = 8) {
+    /// Answers the rays exactly. Those that meet many triangles are traced together.
+    void fall_back(std::span<const InDoubt> rays, Decided& decided) {
         std::vector<FewFound> few(rays.size());
-        run(rays.size(), worth, [&](size_t j) {
+        run(rays.size(), /* worth= */ alone_ ? rays.size() + 1 : 8, [&](size_t j) {
             const auto [i, begin] = rays[j];
             count_fallback(i);
             if (tracing_.watch.keeps_on())
@@ -537,6 +526,7 @@ private:
     const BuiltScene& scene_;
     Query query_;
     const bool are_whole_;
+    const bool alone_;
     const bool may_have_hit_; // a ray, before its answer
     const Leaf scene_leaf_;   // the frame in which rays set out, and the box around its pages
     const LanesScene ahead_;

@@ -28,9 +28,8 @@ namespace ovc {
 
 class LeafStore;
 
-/// So many rays are answered by the CPU about when a pass of the kernel has begun: that takes 75 us
-/// and more, whatever is asked, and a ray on the CPU 0.2 to 2 (docs/benchmarks.md, "Single rays").
-inline constexpr size_t kMaxFewRays = 64;
+/// The most rays that intersect_few() and occluded_few() may be asked for at once.
+inline constexpr size_t kMaxFewRays = 2048;
 
 /// Answers rays through a soup. It takes one call at a time, except where a function says
 /// otherwise.

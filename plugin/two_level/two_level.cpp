@@ -6,11 +6,13 @@
 #include "plugin/build/build_scene.h"
 #include "plugin/build/saved_levels.h"
 #include "plugin/resolve/all_hits.h"
+#include "plugin/resolve/few_rays.h"
 #include "plugin/two_level/mixed_stream.h"
 #include "plugin/two_level/one_pass.h"
 #include "plugin/two_level/wave_round.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cassert>
 
 namespace ovc {
@@ -126,7 +128,7 @@ Hit TwoLevel::nearest_on_cpu(const Ray& ray, const Exclusion& without,
     assert(ray.valid());
     Exclusion more = without;
     for (;;) {
-        const Hit hit = trace_exactly</* kAnyHit= */ false>(scene_, PreparedRay(ray, more));
+        const Hit hit = answer_one</* kAnyHit= */ false>(scene_, ray, more);
         if (!hit.is_hit() || sieve.passes_all() || counts(scene_.soup, sieve, hit))
             return hit;
         more.after = HitPlace(hit);
@@ -139,20 +141,39 @@ bool TwoLevel::occluded_on_cpu(const Ray& ray, const Exclusion& without,
     assert(ray.valid());
     if (!sieve.passes_all())
         return nearest_on_cpu(ray, without, sieve).is_hit();
-    return trace_exactly</* kAnyHit= */ true>(scene_, PreparedRay(ray, without)).is_hit();
+    return answer_one</* kAnyHit= */ true>(scene_, ray, without).is_hit();
+}
+
+size_t TwoLevel::max_few_rays() const {
+    // A pass of the kernel begins after 75 us and more, when so many have been answered here. A
+    // software renderer has the same cores, and is hardly faster then.
+    constexpr size_t kOfOneThread = 64;
+    return passes_.is_software() && scene_.top.portals.empty() ? kMaxFewRays : kOfOneThread;
 }
 
 template <class Query>
 bool TwoLevel::answer_few(const Query& query, uint64_t& invalid) const {
-    assert(query.rays.size() <= kMaxFewRays);
-    if (!has_cpu_tree() || !options_.certify || options_.tell_active ||
+    constexpr size_t kGroup = FewRays<Query>::kMax;
+    const size_t count = query.rays.size(), groups = (count + kGroup - 1) / kGroup;
+    if (count > max_few_rays() || !has_cpu_tree() || !options_.certify || options_.tell_active ||
         !query.without.sieves.pass_all())
         return false;
-    ovc_statistics statistics{};
-    CallWatch nobody;
-    Resolver({scene_, options_, statistics, nobody}, query, /* are_whole= */ true)
-        .answer_without_kernel();
-    invalid += statistics.invalid_rays;
+    std::atomic<uint64_t> all_invalid{0};
+    parallel_for(groups, 1, [&](size_t from, size_t to) {
+        for (size_t group = from; group < to; ++group) {
+            const size_t first = group * kGroup;
+            ovc_statistics statistics{};
+            CallWatch nobody;
+            {
+                Resolver resolver({scene_, options_, statistics, nobody},
+                                  query.part(first, std::min(kGroup, count - first)),
+                                  /* are_whole= */ true, /* alone= */ groups == 1);
+                FewRays(scene_, resolver).answer();
+            }
+            all_invalid += statistics.invalid_rays;
+        }
+    });
+    invalid += all_invalid;
     return true;
 }
 
