@@ -9,7 +9,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -69,11 +71,41 @@ inline const ovc_ray* as_abi(const std::vector<Ray>& rays) {
     return reinterpret_cast<const ovc_ray*>(rays.data());
 }
 
-inline std::vector<ovc_hit> answers(const AbiScene& scene, const std::vector<Ray>& rays) {
-    std::vector<ovc_hit> hits(rays.size());
-    EXPECT_EQ(api().intersect(scene.get(), as_abi(rays), rays.size(), hits.data(), nullptr),
-              OVC_OK);
+/// Returns the query of a call that has the same answers and is the kernel's, however few its rays
+/// are: a call that tells its progress is never answered aside.
+inline ovc_query by_kernel(const ovc_query* query = nullptr) {
+    ovc_query same = query ? *query : sized<ovc_query>();
+    if (!same.progress)
+        same.progress = [](void*, double, const char*) { return 0; };
+    return same;
+}
+
+/// Returns the nearest hits, and expects them to be the same bits by either way: as few rays are
+/// answered, and by the kernel.
+inline std::vector<ovc_hit> answers(ovc_scene scene, std::span<const ovc_ray> rays,
+                                    const ovc_query* query = nullptr) {
+    std::vector<ovc_hit> hits(rays.size()), kernels(rays.size());
+    const ovc_query asked = by_kernel(query);
+    EXPECT_EQ(api().intersect(scene, rays.data(), rays.size(), hits.data(), query), OVC_OK);
+    EXPECT_EQ(api().intersect(scene, rays.data(), rays.size(), kernels.data(), &asked), OVC_OK);
+    for (size_t i = 0; i < rays.size(); ++i)
+        EXPECT_EQ(std::memcmp(&hits[i], &kernels[i], sizeof(ovc_hit)), 0) << "ray " << i;
     return hits;
+}
+inline std::vector<ovc_hit> answers(const AbiScene& scene, const std::vector<Ray>& rays,
+                                    const ovc_query* query = nullptr) {
+    return answers(scene.get(), std::span(as_abi(rays), rays.size()), query);
+}
+
+/// The same for occlusion.
+inline std::vector<uint8_t> occlusion(ovc_scene scene, std::span<const ovc_ray> rays,
+                                      const ovc_query* query = nullptr) {
+    std::vector<uint8_t> occluded(rays.size()), kernels(rays.size());
+    const ovc_query asked = by_kernel(query);
+    EXPECT_EQ(api().occluded(scene, rays.data(), rays.size(), occluded.data(), query), OVC_OK);
+    EXPECT_EQ(api().occluded(scene, rays.data(), rays.size(), kernels.data(), &asked), OVC_OK);
+    EXPECT_EQ(occluded, kernels);
+    return occluded;
 }
 
 inline ovc_statistics statistics(const AbiScene& scene) {

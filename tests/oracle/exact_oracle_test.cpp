@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <cstdlib>
@@ -143,17 +144,10 @@ TEST_F(ExactOracle, FindsNoAnswerThatIsOffByABit) {
                 skip.push_back(random.below(4) == 0 ? triangles[random.below(triangles.size())].id
                                                     : ovc_triangle{OVC_NONE, OVC_NONE});
             }
-            std::vector<ovc_hit> got(rays.size());
-            std::vector<uint8_t> occluded(rays.size());
             auto query = sized<ovc_query>();
             query.skip = skip.data();
-            ASSERT_EQ(api().intersect(scene.get(), rays.data(), rays.size(), got.data(), &query),
-                      OVC_OK)
-                << error();
-            ASSERT_EQ(
-                api().occluded(scene.get(), rays.data(), rays.size(), occluded.data(), &query),
-                OVC_OK)
-                << error();
+            const std::vector<ovc_hit> got = test::answers(scene.get(), rays, &query);
+            const std::vector<uint8_t> occluded = test::occlusion(scene.get(), rays, &query);
             for (size_t i = 0; i < rays.size(); ++i) {
                 const ovc_hit expected = oracle.nearest(rays[i], skip[i]);
                 ASSERT_TRUE(same_bits(got[i], expected))
@@ -210,8 +204,10 @@ protected:
         query.after = hits.data();
         size_t left = 1;
         for (size_t n = 0; left > 0; ++n) {
+            const std::vector<ovc_hit> next = test::answers(scene, rays, &query);
             ASSERT_EQ(api().intersect(scene, rays.data(), kRays, hits.data(), &query), OVC_OK)
                 << error();
+            ASSERT_TRUE(std::ranges::equal(next, hits, same_bits));
             left = 0;
             for (size_t i = 0; i < kRays; ++i) {
                 const bool more = n < expected[i].size();
@@ -225,12 +221,10 @@ protected:
     }
 
     void expect_next(ovc_scene scene, const Oracle& oracle, const std::vector<ovc_hit>& places) {
-        std::vector<ovc_hit> hits(kRays);
-        std::vector<uint8_t> occluded(kRays);
         auto query = sized<ovc_query>();
         query.after = places.data();
-        ASSERT_EQ(api().intersect(scene, rays.data(), kRays, hits.data(), &query), OVC_OK);
-        ASSERT_EQ(api().occluded(scene, rays.data(), kRays, occluded.data(), &query), OVC_OK);
+        const std::vector<ovc_hit> hits = test::answers(scene, rays, &query);
+        const std::vector<uint8_t> occluded = test::occlusion(scene, rays, &query);
         for (size_t i = 0; i < kRays; ++i) {
             const ovc_hit wanted = oracle.next(rays[i], places[i]);
             ASSERT_TRUE(same_bits(hits[i], wanted))
