@@ -53,8 +53,9 @@ public:
     /// Forgets what was counted. No call is under way.
     void count_anew() {
         for (Shard& shard : shards_)
-            for (std::atomic<uint64_t>* count : {&shard.nearest, &shard.occlusion, &shard.invalid,
-                                                 &shard.in_batches, &shard.gathered})
+            for (std::atomic<uint64_t>* count :
+                 {&shard.nearest, &shard.occlusion, &shard.nearest_in_batches,
+                  &shard.occlusion_in_batches, &shard.invalid, &shard.gathered})
                 *count = 0;
     }
 
@@ -90,7 +91,7 @@ public:
             uint64_t invalid = 0;
             const bool done = structure_ && structure_->intersect_few(rays, without, hits, invalid);
             if (done)
-                count_batch(shard_.nearest, rays.size(), invalid);
+                count_batch(shard_.nearest_in_batches, rays.size(), invalid);
             return done;
         }
         bool occluded(RaySpan rays, const Exclusions& without, std::span<uint8_t> occluded) {
@@ -98,14 +99,13 @@ public:
             const bool done =
                 structure_ && structure_->occluded_few(rays, without, occluded, invalid);
             if (done)
-                count_batch(shard_.occlusion, rays.size(), invalid);
+                count_batch(shard_.occlusion_in_batches, rays.size(), invalid);
             return done;
         }
 
     private:
         void count_batch(std::atomic<uint64_t>& rays, uint64_t count, uint64_t invalid) {
             rays += count;
-            shard_.in_batches += count;
             shard_.invalid += invalid;
         }
 
@@ -129,14 +129,17 @@ public:
         Structure* structure_;
     };
 
-    /// Adds what was counted; the structure has counted what was gathered.
+    /// Adds what was counted; the structure has counted what was gathered. Calls may be under way:
+    /// each counter is read once, so that the sums agree.
     void add_to(ovc_statistics& statistics) const {
         for (const Shard& shard : shards_) {
-            statistics.nearest_rays += shard.nearest;
-            statistics.occlusion_rays += shard.occlusion;
+            const uint64_t nearest = shard.nearest, occlusion = shard.occlusion;
+            const uint64_t gathered = shard.gathered;
+            statistics.nearest_rays += nearest + shard.nearest_in_batches;
+            statistics.occlusion_rays += occlusion + shard.occlusion_in_batches;
             statistics.invalid_rays += shard.invalid;
-            statistics.single_rays += shard.single();
-            statistics.gathered_rays += shard.gathered;
+            statistics.single_rays += nearest + occlusion + gathered;
+            statistics.gathered_rays += gathered;
         }
     }
 
@@ -146,13 +149,12 @@ private:
     /// The counters that some of the threads write. A thread always uses the same shard.
     struct alignas(64) Shard {
         std::atomic<uint32_t> inside{0};  // calls under way
-        std::atomic<uint64_t> nearest{0}; // answered on the CPU, as the next two
+        std::atomic<uint64_t> nearest{0}; // single rays that the CPU answered
         std::atomic<uint64_t> occlusion{0};
-        std::atomic<uint64_t> invalid{0};
-        std::atomic<uint64_t> in_batches{0}; // of nearest and occlusion
+        std::atomic<uint64_t> nearest_in_batches{0}; // which the CPU answered, too
+        std::atomic<uint64_t> occlusion_in_batches{0};
+        std::atomic<uint64_t> invalid{0}; // of all these
         std::atomic<uint64_t> gathered{0};
-
-        uint64_t single() const { return nearest + occlusion - in_batches + gathered; }
     };
 
     Shard& own_shard() {
