@@ -118,6 +118,11 @@ void Chunk::place_anew(const std::optional<Transform>& transform) {
     plain_ = is_plain();
 }
 
+void Chunk::take_place(Chunk& other) noexcept {
+    transform_ = std::move(other.transform_);
+    plain_ = is_plain();
+}
+
 void Chunk::set_corners(uint32_t first, std::span<const vec3> corners) {
     assert(first * size_t(3) + corners.size() <= owned_.size());
     std::ranges::copy(corners, owned_.begin() + ptrdiff_t(first) * 3);

@@ -61,6 +61,9 @@ public:
     /// Puts the triangles where the transform takes the mesh, or where the mesh lies by itself,
     /// whatever placed them before.
     void place_anew(const std::optional<Transform>& transform);
+    /// Does the same with the transform of another chunk, which has none afterwards. It takes no
+    /// memory.
+    void take_place(Chunk& other) noexcept;
     /// Gives triangle `first` and those behind it new corners, three each. The chunk owns corners
     /// of this kind, and its instances see the new ones too.
     void set_corners(uint32_t first, std::span<const vec3> corners);

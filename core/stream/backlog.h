@@ -16,6 +16,7 @@ namespace ovc {
 
 class Backlog {
 public:
+    /// Takes the rays, or throws for want of memory and takes none.
     void push(const StreamRays& pushed) {
         assert(pushed.tokens.size() == pushed.rays.size());
         assert(pushed.skip.empty() || pushed.skip.size() == pushed.rays.size());
@@ -23,6 +24,9 @@ public:
         reserve_sparingly(rays_, count);
         reserve_sparingly(tokens_, count);
         reserve_sparingly(skip_, count);
+        make_room(after_, pushed.after, count);
+        make_room(masks_, pushed.masks, count);
+        make_room(filters_, pushed.filters, count);
         rays_.insert(rays_.end(), pushed.rays.begin(), pushed.rays.end());
         tokens_.insert(tokens_.end(), pushed.tokens.begin(), pushed.tokens.end());
         skip_.insert(skip_.end(), pushed.skip.begin(), pushed.skip.end());
@@ -69,6 +73,11 @@ public:
     }
 
 private:
+    template <class T>
+    static void make_room(std::vector<T>& all, std::span<const T> pushed, size_t count) {
+        if (!pushed.empty() || !all.empty())
+            reserve_sparingly(all, count);
+    }
     /// Brings `all` to one per ray, unless none has one: `other` for those without, among the first
     /// `before` rays. pushed: those of the rays behind these, or one for all of them.
     template <class T>

@@ -6,12 +6,13 @@
 #include <cassert>
 #include <chrono>
 #include <condition_variable>
-#include <cstdint>
 #include <mutex>
-#include <set>
+#include <thread>
+#include <utility>
 
 namespace ovc {
 
+/// It takes no memory, so that a thread may give up where there is none.
 class Turn {
 public:
     void lock() {
@@ -23,8 +24,11 @@ public:
     template <class GoesOn>
     bool lock_while(GoesOn&& goes_on) {
         std::unique_lock lock(mutex_);
-        const uint64_t mine = next_++;
-        const auto is_mine = [&] { return served_ == mine; };
+        if (take())
+            return true;
+        Waiter mine;
+        *std::exchange(end_, &mine.next) = &mine;
+        const auto is_mine = [&] { return mine.has_turn; };
         while (!changed_.wait_for(lock, std::chrono::milliseconds(20), is_mine)) {
             bool waits = false;
             lock.unlock();
@@ -46,10 +50,13 @@ public:
 
     bool try_lock() {
         const std::lock_guard lock(mutex_);
-        if (served_ != next_)
-            return false;
-        ++next_;
-        return true;
+        return take();
+    }
+
+    /// Returns the thread that has the turn; no thread's id where none has.
+    std::thread::id owner() const {
+        const std::lock_guard lock(mutex_);
+        return owner_;
     }
 
     void unlock() {
@@ -61,26 +68,53 @@ public:
     }
 
 private:
-    void serve_next() {
-        assert(served_ != next_); // some thread has the turn
-        do
-            ++served_;
-        while (given_up_.erase(served_) > 0);
+    /// A thread that waits, on whose stack it lies.
+    struct Waiter {
+        const std::thread::id thread = std::this_thread::get_id();
+        Waiter* next = nullptr; // behind it
+        bool has_turn = false;
+    };
+
+    bool take() {
+        if (owner_ != std::thread::id())
+            return false;
+        owner_ = std::this_thread::get_id();
+        return true;
     }
-    void give_up(uint64_t number) {
-        if (number != served_) {
-            given_up_.insert(number);
+    void serve_next() {
+        assert(owner_ != std::thread::id());
+        owner_ = {};
+        if (first_) {
+            Waiter* const next = leave(&first_);
+            owner_ = next->thread;
+            next->has_turn = true;
+        }
+    }
+    void give_up(Waiter& waiter) {
+        if (waiter.has_turn) {
+            serve_next();
+            changed_.notify_all();
             return;
         }
-        serve_next();
-        changed_.notify_all();
+        Waiter** at = &first_;
+        while (*at != &waiter)
+            at = &(*at)->next;
+        leave(at);
+    }
+    /// Takes out the waiter that the link leads to, and returns it.
+    Waiter* leave(Waiter** link) {
+        Waiter* const leaves = *link;
+        *link = leaves->next;
+        if (end_ == &leaves->next)
+            end_ = link;
+        return leaves;
     }
 
-    std::mutex mutex_; // guards the members below
+    mutable std::mutex mutex_; // guards the members below, and all waiters
     std::condition_variable changed_;
-    uint64_t next_ = 0;           // the number for the next thread that comes
-    uint64_t served_ = 0;         // the number whose turn it is
-    std::set<uint64_t> given_up_; // numbers that are still to be served
+    std::thread::id owner_;
+    Waiter* first_ = nullptr; // none waits where nobody has the turn
+    Waiter** end_ = &first_;  // where the next goes
 };
 
 } // namespace ovc

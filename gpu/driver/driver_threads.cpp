@@ -2,8 +2,9 @@
 // Finds threads in /proc and reads their clocks by the formula of pthread_getcpuclockid().
 #include "gpu/driver/driver_threads.h"
 
+#include "core/system/folder.h"
+
 #include <algorithm>
-#include <filesystem>
 #include <fstream>
 #include <string>
 #include <thread>
@@ -56,11 +57,11 @@ void keep_to_cores(uint32_t count) {
 
 DriverThreads DriverThreads::find() {
     DriverThreads found;
-    std::error_code error;
-    for (const auto& task : std::filesystem::directory_iterator("/proc/self/task", error)) {
+    const std::string tasks = "/proc/self/task";
+    for (const std::string& task : names_in(tasks)) {
         std::string name;
-        std::getline(std::ifstream(task.path() / "comm"), name);
-        const int thread = std::atoi(task.path().filename().c_str());
+        std::getline(std::ifstream(tasks + "/" + task + "/comm"), name);
+        const int thread = std::atoi(task.c_str());
         const bool unnamed = name == kDeviceThreadName && thread != gettid();
         if (unnamed || name.starts_with("llvmpipe-"))
             found.threads_.push_back(thread);

@@ -250,8 +250,9 @@ Result<GLuint> KernelCache::program(const ShaderConfig& config) {
     if (begun == begun_.end()) {
         program = link_program(stages_of(config), config.defines());
     } else {
-        program = finish_link(std::move(*begun->linking));
-        begun_.erase(begun);
+        const auto linking = std::move(begun->linking);
+        begun_.erase(begun); // once, whatever comes of it
+        program = finish_link(std::move(*linking));
     }
     if (!program)
         return program.error();

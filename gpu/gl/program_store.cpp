@@ -6,6 +6,7 @@
 #include "core/file/archive.h"
 #include "core/file/mapped_file.h"
 #include "core/file/replace_file.h"
+#include "core/system/folder.h"
 #include "core/text/format_text.h"
 
 #include <algorithm>
@@ -141,13 +142,12 @@ void ProgramStore::make_room() const {
     };
     std::vector<Kept> files;
     uint64_t bytes = 0;
-    std::error_code failed;
-    for (fs::directory_iterator at(folder_, failed), end; !failed && at != end;
-         at.increment(failed)) {
-        if (at->path().extension() != kSuffix)
+    for (const std::string& name : names_in(folder_)) {
+        if (!name.ends_with(kSuffix))
             continue;
         std::error_code gone; // another process may have made room as well
-        const Kept kept{at->path(), at->last_write_time(gone), at->file_size(gone)};
+        const fs::path path = folder_ / name;
+        const Kept kept{path, fs::last_write_time(path, gone), fs::file_size(path, gone)};
         if (gone)
             continue;
         files.push_back(kept);
@@ -157,7 +157,8 @@ void ProgramStore::make_room() const {
     for (const Kept& kept : files) {
         if (bytes <= max_bytes_)
             break;
-        fs::remove(kept.path, failed);
+        std::error_code gone;
+        fs::remove(kept.path, gone);
         bytes -= kept.bytes;
     }
 }

@@ -46,6 +46,25 @@ size_t rays_a_lane(size_t rays, size_t packet, bool software) {
     return packet * std::clamp<size_t>(each, 1, kLaneRays / packet);
 }
 
+/// Frees the slot of a pass that is over when this goes, also where an exception ends it.
+struct EndOfPass {
+    PassSlot& slot;
+    bool is_over = true;
+    ~EndOfPass() {
+        if (is_over)
+            slot.sent = nullptr;
+    }
+};
+
+/// Names to the driver's debuggers what is called while it lives.
+struct DebugGroup {
+    explicit DebugGroup(const char* name) {
+        glPushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, 0, -1, name);
+    }
+    ~DebugGroup() { glPopDebugGroup(); }
+    DebugGroup(const DebugGroup&) = delete;
+};
+
 Result<Done> check_answers(const PassSlot& slot) {
     if (slot.is_complete())
         return Done{};
@@ -358,14 +377,15 @@ Result<Tracer::Pass> Tracer::submit(SentRays& rays) {
     slot.packets = packs(slot.kind, slot.variant) && rays.part(slot.max_slots);
     slot.kernel_seconds = 0;
     slot.sent = &rays;
+    EndOfPass end{slot};
     slot.make_answers(*ledger_, slot.variant.compute, device_.passes_in_flight > 1);
     Result<Done> done = check_answers(slot);
     if (done)
         done = launch(slot);
-    if (done)
-        return size_t(free - slots_.begin());
-    slot.sent = nullptr;
-    return done.error();
+    if (!done)
+        return done.error();
+    end.is_over = false;
+    return size_t(free - slots_.begin());
 }
 
 /// Where the driver compiles a kernel beside this thread, it is given the one for any hit, or for
@@ -400,7 +420,7 @@ Result<Done> Tracer::launch(PassSlot& slot) {
         return program.error();
     show_rays(slot);
 
-    glPushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, 0, -1, "pass");
+    const DebugGroup group("pass");
     glUseProgram(*program);
     pool_.bind(config.reads);
     slot.rays.bind(OVC_BINDING_RAYS, config.reads);
@@ -433,7 +453,6 @@ Result<Done> Tracer::launch(PassSlot& slot) {
         slot.words->begin_read(slot.sent->slots(), may_wait());
     else
         slot.pixels->begin_read(slot.sent->size());
-    glPopDebugGroup();
     if (device_.passes_in_flight == 1)
         glFinish();
     else
@@ -525,10 +544,7 @@ bool Tracer::are_passes_under_way() const {
 Result<Done> Tracer::collect(Pass pass, Answers& answers) {
     PassSlot& slot = slots_[pass];
     assert(slot.sent);
-    struct Over {
-        PassSlot& slot;
-        ~Over() { slot.sent = nullptr; }
-    } const over{slot}; // also where an exception ends this
+    const EndOfPass end{slot};
     return collect(slot, answers);
 }
 

@@ -6,8 +6,12 @@
 #include "plugin/abi/scene_call.h"
 #include "plugin/abi/struct_size.h"
 
+#include <algorithm>
 #include <cassert>
+#include <iterator>
+#include <map>
 #include <optional>
+#include <vector>
 
 namespace ovc {
 namespace {
@@ -39,27 +43,54 @@ Chunk chunk_of(const ovc_mesh& mesh) {
                   : Chunk::owning(origin, copied_corners(mesh));
 }
 
-/// Returns where to enter a change of a committed scene, before it is made. Nothing is traced
-/// through the scene from now on until the next commit.
-Changes& begin_change(ovc_scene scene) {
+/// Has enter(changes) enter a change of a committed scene before it is made, or throw and enter
+/// nothing. Nothing is traced through the scene from then on until the next commit.
+template <class Enter>
+void begin_change(ovc_scene scene, Enter&& enter) {
     assert(scene->structure);
     if (scene->store)
         throw Failure{OVC_ERROR_INVALID_STATE,
                       "a scene with host_memory_bytes cannot change after commit"};
-    if (!scene->changes.any()) {
+    const bool is_first = !scene->changes.any();
+    enter(scene->changes);
+    if (is_first) {
         scene->single_rays.serve(nullptr);
         scene->structure->leave_soup();
     }
-    return scene->changes;
 }
 
+/// Room for one element more in a vector that other threads may still read.
+template <class T>
+class RoomFor {
+public:
+    explicit RoomFor(std::vector<T>& all) : all_(all) {
+        if (all.size() == all.capacity())
+            larger_.reserve(2 * all.size() + 1);
+    }
+    /// Adds it, when nobody reads the vector any more. It takes no memory.
+    void add(T item) noexcept {
+        if (larger_.capacity() > 0) {
+            std::ranges::move(all_, std::back_inserter(larger_));
+            all_ = std::move(larger_);
+        }
+        all_.push_back(std::move(item));
+    }
+
+private:
+    std::vector<T>& all_;
+    std::vector<T> larger_; // without capacity where the vector has room
+};
+
+/// Adds the chunk, or throws and adds nothing.
 void add_chunk(ovc_scene scene, Chunk chunk, uint32_t source, uint32_t* mesh_id) {
+    RoomFor chunks(scene->soup.chunks);
+    RoomFor sources(scene->sources);
     if (scene->structure) {
-        begin_change(scene).added = true;
+        begin_change(scene, [](Changes& changes) { changes.added = true; });
         chunk.set_moves(); // so that what is built already stays as it is
     }
-    scene->soup.chunks.push_back(std::move(chunk));
-    scene->sources.push_back({source});
+    chunks.add(std::move(chunk));
+    sources.add({source});
     if (mesh_id)
         *mesh_id = uint32_t(scene->soup.chunks.size() - 1);
 }
@@ -111,14 +142,19 @@ void note_moved(ovc_scene scene, uint32_t mesh_id, uint32_t first, uint32_t end)
     if (!scene->structure || first == end)
         return;
     const std::vector<MeshSource>& sources = scene->sources;
+    std::vector<PrimRange> moved;
     uint32_t left = 1 + sources[mesh_id].instances; // which come after the mesh
     for (uint32_t i = mesh_id; left > 0 && i < sources.size(); ++i) {
         if (sources[i].mesh != mesh_id)
             continue;
         left -= 1;
         if (scene->soup.chunks[i].size() > 0)
-            begin_change(scene).moved.push_back({i, first, end});
+            moved.push_back({i, first, end});
     }
+    if (!moved.empty())
+        begin_change(scene, [&](Changes& changes) {
+            changes.moved.insert(changes.moved.end(), moved.begin(), moved.end());
+        });
 }
 
 } // namespace
@@ -139,11 +175,13 @@ ovc_result add_mesh(ovc_scene scene, const ovc_mesh* given, uint32_t* mesh_id) {
         if (mesh.flags & OVC_MESH_MOVES)
             chunk.set_moves();
         const auto number = uint32_t(scene->soup.chunks.size());
+        std::map<uint32_t, Chunk> hidden; // merging it takes no memory
         if (mesh.flags & OVC_MESH_TEMPLATE) {
-            scene->templates.emplace(number, std::move(chunk));
+            hidden.emplace(number, std::move(chunk));
             chunk = Chunk::owning(dvec3(0), {});
         }
         add_chunk(scene, std::move(chunk), number, mesh_id);
+        scene->templates.merge(hidden);
     });
 }
 
@@ -158,12 +196,14 @@ ovc_result add_instance(ovc_scene scene, const ovc_instance* given, uint32_t* me
         const auto transform = transform_of("ovc_instance.transform", instance.transform);
         const Chunk& placed = chunk_of_mesh(scene, instance.mesh);
         Chunk chunk = placed.instance();
+        std::map<uint32_t, Transform> placed_first; // as in add_mesh()
         if (const Transform* first = placed.transform())
-            scene->placed_first.emplace(uint32_t(scene->soup.chunks.size()), *first);
+            placed_first.emplace(uint32_t(scene->soup.chunks.size()), *first);
         if (transform)
             chunk.place(*transform);
         chunk.set_mask(instance.mask);
         add_chunk(scene, std::move(chunk), source, mesh_id);
+        scene->placed_first.merge(placed_first);
         scene->sources[source].instances += 1;
     });
 }
@@ -205,11 +245,13 @@ ovc_result update_instance(ovc_scene scene, uint32_t mesh_id, const double* give
         if (const auto first = scene->placed_first.find(mesh_id);
             first != scene->placed_first.end())
             transform = transform ? then(first->second, *transform) : first->second;
+        Chunk placed = chunk.unplaced();
+        placed.place_anew(transform);
         if (scene->structure && scene->soup.chunks[mesh_id].size() > 0) {
-            begin_change(scene).placed.push_back(mesh_id);
+            begin_change(scene, [&](Changes& changes) { changes.placed.push_back(mesh_id); });
             chunk.set_moves();
         }
-        chunk.place_anew(transform);
+        chunk.take_place(placed);
     });
 }
 
@@ -217,14 +259,20 @@ ovc_result remove_mesh(ovc_scene scene, uint32_t mesh_id) {
     return on_scene(scene, "remove_mesh", [&] {
         const uint32_t source = source_of(scene, "remove_mesh: mesh_id", mesh_id);
         Chunk& chunk = scene->soup.chunks[mesh_id];
-        if (scene->structure && chunk.size() > 0)
-            begin_change(scene).removed.push_back({mesh_id, 0, chunk.size()});
         std::vector<MeshSource>& sources = scene->sources;
+        std::map<uint32_t, Chunk> hidden;                       // as in add_mesh()
+        if (source == mesh_id && sources[source].instances > 0) // their corners stay
+            hidden.emplace(mesh_id, Chunk::owning(dvec3(0), {}));
+        if (scene->structure && chunk.size() > 0)
+            begin_change(scene, [&](Changes& changes) {
+                changes.removed.push_back({mesh_id, 0, chunk.size()});
+            });
         sources[mesh_id].mesh = kNone;
         if (source != mesh_id)
             sources[source].instances -= 1;
-        else if (sources[source].instances > 0) // their corners stay
-            scene->templates.emplace(mesh_id, std::move(chunk));
+        else if (!hidden.empty())
+            hidden.begin()->second = std::move(chunk);
+        scene->templates.merge(hidden);
         chunk = Chunk::owning(dvec3(0), {});
         if (sources[source].mesh == kNone && sources[source].instances == 0)
             scene->templates.erase(source);

@@ -148,6 +148,22 @@ Result<Done> PassRunner::open(BuildProgress* progress) {
     return fine;
 }
 
+/// Does something that waits for work with the tracer. Work that throws, for want of memory, leaves
+/// a tracer of no use: with a pass that nobody collects, or without a page that it believes it has.
+template <class Waits>
+void PassRunner::with_tracer(Waits&& waits) {
+    try {
+        waits();
+    } catch (...) {
+        is_whole_ = false;
+        throw;
+    }
+}
+
+void PassRunner::finish(GlThread::Job& job) {
+    with_tracer([&] { gl_.finish(job, [this] { tracing_.watch.keeps_on(); }); });
+}
+
 /// Returns whether the pages could be brought up to date where they are. anew: the plan of the
 /// scene as it is now.
 Result<bool> PassRunner::update_in_place(const MemoryPlan& anew, const PageChanges& changes) {
@@ -261,9 +277,11 @@ std::vector<uint64_t> PassRunner::costs() const {
 size_t PassRunner::bring(std::span<const uint32_t> wanted) {
     assert(tracer_);
     Moved moved;
-    gl_.run([&](GlState& state) {
-        if (is_ours(state))
-            moved = move_in(wanted);
+    with_tracer([&] {
+        gl_.run([&](GlState& state) {
+            if (is_ours(state))
+                moved = move_in(wanted);
+        });
     });
     tracing_.statistics.pages_in += moved.pages;
     tracing_.statistics.bytes_in += moved.bytes;
@@ -314,10 +332,13 @@ void PassRunner::begin_pass(Batch& batch, std::span<const uint32_t> wanted) {
     assert(batch.sent.size() == batch.rays.size() && batch.stage == Batch::Stage::None);
     batch.result = {};
     batch.pass = {};
+    std::function<void(GlState&)> work =
+        [this, &batch, pages = std::vector(wanted.begin(), wanted.end())](GlState& state) {
+            send(state, batch, pages);
+        };
+    sent_.push_back(&batch); // nothing behind this takes memory
     batch.stage = Batch::Stage::Sent;
-    gl_.begin(batch.sending, [this, &batch, pages = std::vector(wanted.begin(), wanted.end())](
-                                 GlState& state) { send(state, batch, pages); });
-    sent_.push_back(&batch);
+    gl_.begin(batch.sending, std::move(work));
     // The device always has something to do: a pass is collected once the next one is sent.
     while (sent_.size() >= passes_in_flight())
         begin_to_collect();
@@ -363,7 +384,7 @@ void PassRunner::collect(GlState& state, Batch& batch) {
 }
 
 size_t PassRunner::moved_beside(Batch& batch) {
-    gl_.finish(batch.sending, [this] { tracing_.watch.keeps_on(); });
+    finish(batch.sending);
     return size_t(batch.result.moved.pages);
 }
 
@@ -371,9 +392,8 @@ Result<Done> PassRunner::finish_pass(Batch& batch) {
     if (batch.stage == Batch::Stage::Sent)
         begin_to_collect();
     assert(batch.stage == Batch::Stage::Collected);
-    const auto idle = [this] { tracing_.watch.keeps_on(); };
-    gl_.finish(batch.collecting, idle); // after the other
-    gl_.finish(batch.sending, idle);
+    finish(batch.collecting); // after the other
+    finish(batch.sending);
     batch.stage = Batch::Stage::None;
     const auto& [done, alive, moved, seconds, kernel_seconds] = batch.result;
     if (!alive)
@@ -401,7 +421,7 @@ void PassRunner::abandon() {
         if (std::exchange(batch.stage, Batch::Stage::None) != Batch::Stage::None)
             for (GlThread::Job* const job : {&batch.sending, &batch.collecting})
                 try {
-                    gl_.finish(*job, [] {});
+                    finish(*job);
                 } catch (...) { // the call has failed already
                 }
 }

@@ -143,6 +143,9 @@ private:
     void tune(GlState& state, SentRays& rays, const PassCost& pass);
     void send(GlState& state, Batch& batch, std::span<const uint32_t> wanted);
     void begin_to_collect();
+    template <class Waits>
+    void with_tracer(Waits&& waits);
+    void finish(GlThread::Job& job);
     void collect(GlState& state, Batch& batch);
     void abandon();
     /// Whether the tracer's context is alive. Called on the context's thread.

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// NoMemory: lets memory run out for one thread, at any of its allocations.
+// NoMemory: lets memory run out at any allocation of a thread, or of the library.
 #pragma once
 
 namespace ovc::test {
 
-/// While it lives, this thread's operator new, the library's included, makes `allocations` more and
-/// then throws std::bad_alloc. Other threads, and with them the drivers', are spared.
+/// While it lives, operator new makes `allocations` more and then throws std::bad_alloc: on this
+/// thread, from then on, in the library and outside; or on all threads, once, for the library's own
+/// code. Drivers are spared, which end the process.
 class NoMemory {
 public:
-    explicit NoMemory(int allocations);
+    enum class Of { ThisThread, Library };
+    explicit NoMemory(int allocations, Of threads = Of::ThisThread);
     ~NoMemory();
     NoMemory(const NoMemory&) = delete;
 

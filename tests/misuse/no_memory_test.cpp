@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Calls without memory return a code, throw nothing through the C ABI, and leave every handle
 // either whole or gone.
+#include "core/stream/backlog.h"
+#include "core/system/turn.h"
 #include "tests/misuse/field.h"
 #include "tests/misuse/no_memory.h"
 
@@ -30,8 +32,8 @@ int with_ever_more_memory(const std::function<bool(int)>& misses) {
 
 /// Returns whether the call asked for more memory than for so many allocations.
 template <class Call>
-bool misses(int allocations, Call&& call) {
-    const NoMemory none(allocations);
+bool misses(int allocations, Call&& call, NoMemory::Of threads = NoMemory::Of::ThisThread) {
+    const NoMemory none(allocations, threads);
     call();
     return none.was_missed();
 }
@@ -157,6 +159,171 @@ TEST_F(WithoutMemory, ASceneAnswersAsSoonAsThereIsMemoryAgain) {
             api().destroy_scene(scene);
             return missed;
         });
+}
+
+/// A scene, and changes of it that may end early.
+class Change {
+public:
+    explicit Change(ovc_device device) {
+        EXPECT_EQ(api().create_scene(device, nullptr, &scene_), OVC_OK);
+        const ovc_mesh field = test::field_mesh();
+        EXPECT_EQ(api().add_mesh(scene_, &field, nullptr), OVC_OK);
+        EXPECT_EQ(add_placed(), OVC_OK);
+        EXPECT_EQ(add_instance(), OVC_OK);
+    }
+    ~Change() { api().destroy_scene(scene_); }
+    Change(const Change&) = delete;
+
+    /// The numbers that these give are checked where they succeed.
+    ovc_result add_placed(uint32_t flags = 0) {
+        auto mesh = sized<ovc_mesh>();
+        mesh.positions = test::field_positions().data();
+        mesh.vertex_count = 3;
+        mesh.transform = kPlace;
+        mesh.flags = flags;
+        uint32_t number = OVC_NONE;
+        const ovc_result result = api().add_mesh(scene_, &mesh, &number);
+        if (result == OVC_OK) {
+            EXPECT_EQ(number, meshes_++);
+        }
+        return result;
+    }
+    ovc_result add_instance() {
+        auto instance = sized<ovc_instance>();
+        instance.mesh = 1;
+        instance.transform = kPlace;
+        uint32_t number = OVC_NONE;
+        const ovc_result result = api().add_instance(scene_, &instance, &number);
+        if (result == OVC_OK) {
+            EXPECT_EQ(number, meshes_++);
+        }
+        return result;
+    }
+    ovc_result move() { return api().update_instance(scene_, 2, kPlace); }
+    ovc_result remove() { return api().remove_mesh(scene_, 1); }
+    ovc_result commit() { return api().commit(scene_); }
+
+    /// Returns where a ray along each place meets what is there, and how many triangles there are.
+    std::vector<double> seen() {
+        std::vector<double> seen;
+        for (uint32_t place = 0; place < 8; ++place) {
+            const ovc_ray ray{{0.25, 0.25 + 100 * place, 1}, 0, {0, 0, -1}, HUGE_VAL};
+            ovc_hit hit{};
+            EXPECT_EQ(api().intersect1(scene_, &ray, &hit, nullptr), OVC_OK);
+            seen.push_back(hit.mesh);
+        }
+        auto statistics = sized<ovc_statistics>();
+        EXPECT_EQ(api().statistics(scene_, &statistics), OVC_OK);
+        seen.push_back(double(statistics.triangles));
+        return seen;
+    }
+
+private:
+    static constexpr double kPlace[12]{1, 0, 0, 0, 0, 1, 0, 100, 0, 0, 1, 0};
+
+    ovc_scene scene_ = nullptr;
+    uint32_t meshes_ = 1;
+};
+
+TEST_F(WithoutMemory, AChangeThatFailsChangesNothing) {
+    using Call = std::function<ovc_result(Change&)>;
+    const std::vector<Call> changes{
+        [](Change& scene) { return scene.add_placed(); },
+        [](Change& scene) { return scene.add_placed(OVC_MESH_TEMPLATE); },
+        [](Change& scene) { return scene.add_instance(); },
+        [](Change& scene) { return scene.move(); },
+        [](Change& scene) { return scene.remove(); },
+    };
+    for (const bool is_committed : {false, true})
+        for (const Call& change : changes) {
+            const std::vector<double> expected = [&] {
+                Change scene(device.get());
+                EXPECT_EQ(change(scene), OVC_OK);
+                EXPECT_EQ(scene.add_placed(), OVC_OK);
+                EXPECT_EQ(scene.commit(), OVC_OK);
+                return scene.seen();
+            }();
+            with_ever_more_memory([&](int allocations) {
+                Change scene(device.get());
+                std::vector<double> before;
+                if (is_committed) {
+                    EXPECT_EQ(scene.commit(), OVC_OK);
+                    before = scene.seen();
+                }
+                ovc_result result = OVC_OK;
+                const bool missed = misses(allocations, [&] { result = change(scene); });
+                EXPECT_EQ(result, missed ? OVC_ERROR_OUT_OF_MEMORY : OVC_OK);
+                if (missed) {
+                    if (is_committed) {
+                        EXPECT_EQ(scene.seen(), before) << "it takes rays as before";
+                    }
+                    EXPECT_EQ(change(scene), OVC_OK);
+                }
+                EXPECT_EQ(scene.add_placed(), OVC_OK); // which gets the next number
+                EXPECT_EQ(scene.commit(), OVC_OK);
+                EXPECT_EQ(scene.seen(), expected) << allocations;
+                return missed;
+            });
+        }
+}
+
+TEST_F(WithoutMemory, APassThatFailsOnTheDevicesThreadLeavesNoTrace) {
+    const test::AbiScene scene(test::make_field(device.get()));
+    ASSERT_TRUE(test::field_answers(scene.get())); // its kernels are there now
+    std::vector<ovc_ray> rays;
+    for (uint32_t i = 0; i < 5000; ++i)
+        rays.push_back(test::into_cell(i % test::kCells, 1));
+    std::vector<ovc_hit> hits(rays.size());
+    const int needed = with_ever_more_memory([&](int allocations) {
+        ovc_result result = OVC_OK;
+        const bool missed = misses(
+            allocations,
+            [&] {
+                result =
+                    api().intersect(scene.get(), rays.data(), rays.size(), hits.data(), nullptr);
+            },
+            NoMemory::Of::Library);
+        EXPECT_THAT(result, AnyOf(OVC_OK, OVC_ERROR_OUT_OF_MEMORY));
+        EXPECT_TRUE(test::field_answers(scene.get())) << allocations;
+        return missed;
+    });
+    EXPECT_GT(needed, 0);
+}
+
+TEST(WithoutMemoryTurn, AThreadGivesItUp) {
+    Turn turn;
+    turn.lock();
+    std::thread([&] {
+        const NoMemory none(0);
+        EXPECT_FALSE(turn.lock_while([] { return false; }));
+        EXPECT_FALSE(none.was_missed());
+    }).join();
+    turn.unlock();
+    EXPECT_TRUE(turn.try_lock()) << "nobody waits for it";
+    turn.unlock();
+}
+
+TEST(WithoutMemoryBacklog, TakesRaysWholeOrNot) {
+    const std::vector<Ray> rays(40);
+    const std::vector<TriangleId> skip(40);
+    const std::vector<uint64_t> tokens(40);
+    const std::vector<Hit> after(40);
+    const std::vector<uint32_t> masks(40);
+    with_ever_more_memory([&](int allocations) {
+        Backlog backlog;
+        backlog.push({false, rays, skip, tokens});
+        bool thrown = false;
+        const bool missed = misses(allocations, [&] {
+            try {
+                backlog.push({false, rays, skip, tokens, after, masks});
+            } catch (const std::bad_alloc&) {
+                thrown = true;
+            }
+        });
+        EXPECT_EQ(thrown, missed);
+        EXPECT_EQ(backlog.size(), missed ? 40u : 80u);
+        return missed;
+    });
 }
 
 } // namespace
