@@ -85,6 +85,39 @@ bool SharedBudget::nobody_works() const {
     });
 }
 
+/// Whether shares are waited for, none of which can be granted as others are used now.
+bool SharedBudget::nobody_may_begin() const {
+    uint64_t used = 0, least = ~uint64_t(0);
+    for (const Share* share : shares_) {
+        used += share->user_ == std::thread::id() ? 0 : share->bytes_;
+        least = share->is_wanted_ ? std::min(least, share->least_) : least;
+    }
+    return least != ~uint64_t(0) && least > bytes_ - used;
+}
+
+bool SharedBudget::is_inside(std::thread::id thread) const {
+    return std::ranges::any_of(shares_, [&](const Share* s) { return s->user_ == thread; });
+}
+
+SharedBudget::Waiting::Waiting(SharedBudget& budget, Share* wanted)
+    : budget_(budget), wanted_(wanted) {
+    const std::lock_guard lock(budget_.mutex_);
+    budget_.waiting_.insert(std::this_thread::get_id());
+}
+
+SharedBudget::Waiting::~Waiting() {
+    const std::lock_guard lock(budget_.mutex_);
+    budget_.waiting_.erase(std::this_thread::get_id());
+    if (wanted_)
+        wanted_->is_wanted_ = false;
+}
+
+bool SharedBudget::Waiting::is_in_vain(std::thread::id other) const {
+    const std::lock_guard lock(budget_.mutex_);
+    return budget_.is_inside(std::this_thread::get_id()) && budget_.waiting_.contains(other) &&
+           budget_.nobody_works() && budget_.nobody_may_begin();
+}
+
 Share::Share(SharedBudget& budget, std::function<void()> close)
     : budget_(budget), close_(std::move(close)) {
     const std::lock_guard lock(budget_.mutex_);
@@ -119,9 +152,9 @@ Result<Use> Share::begin(const std::function<bool()>& goes_on) {
         return Use();
     }
     const std::thread::id me = std::this_thread::get_id();
+    const Waiting waiting(budget_, this); // until the lock is given back
     std::unique_lock lock(budget_.mutex_);
-    const bool is_inside =
-        std::ranges::any_of(budget_.shares_, [&](const Share* s) { return s->user_ == me; });
+    const bool is_inside = budget_.is_inside(me);
     std::unique_lock<Turn> turn;
     if (!is_inside) { // otherwise the thread whose turn it is may wait for this call
         lock.unlock();
@@ -133,21 +166,18 @@ Result<Use> Share::begin(const std::function<bool()>& goes_on) {
     while (!budget_.grant(*this)) {
         if (bytes_ > 0)
             budget_.close(*this); // those that wait hold nothing, or two might wait for each other
-        if (is_inside)
-            budget_.waiting_.insert(me);
-        const bool in_vain = is_inside && budget_.nobody_works();
-        if (!in_vain)
-            budget_.changed_.wait_for(lock, std::chrono::milliseconds(20));
-        budget_.waiting_.erase(me);
-        if (in_vain)
+        if (is_inside && budget_.nobody_works())
             return Error{"the scenes of the calls that this one comes from leave it no room in the "
                          "budget that they share",
                          ErrorKind::OverBudget};
+        is_wanted_ = true;
+        budget_.changed_.wait_for(lock, std::chrono::milliseconds(20));
         lock.unlock();
         if (!goes_on())
             return Error{"cancelled", ErrorKind::Cancelled};
         lock.lock();
     }
+    budget_.waiting_.erase(me);
     user_ = me;
     last_use_ = ++budget_.clock_;
     return Use(*this);

@@ -28,6 +28,22 @@ public:
 
     uint64_t bytes() const { return bytes_; }
 
+    /// While it lives, this thread waits for what another thread has. It may be within a Use.
+    class Waiting {
+    public:
+        explicit Waiting(SharedBudget& budget, Share* wanted = nullptr);
+        ~Waiting();
+        Waiting(const Waiting&) = delete;
+
+        /// Whether the other thread waits for room that only this one, and threads that wait as it
+        /// does, could give back.
+        bool is_in_vain(std::thread::id other) const;
+
+    private:
+        SharedBudget& budget_;
+        Share* const wanted_;
+    };
+
     /// The time within which a share may be used. Nobody takes it away meanwhile.
     class Use {
     public:
@@ -77,9 +93,10 @@ public:
         SharedBudget& budget_;
         const std::function<void()> close_;
         uint64_t least_ = 0, most_ = 0;
-        uint64_t bytes_ = 0;    // granted; 0: closed
-        std::thread::id user_;  // the thread that is within a Use
-        uint64_t last_use_ = 0; // a time
+        uint64_t bytes_ = 0;     // granted; 0: closed
+        std::thread::id user_;   // the thread that is within a Use
+        bool is_wanted_ = false; // a thread waits until it is granted
+        uint64_t last_use_ = 0;  // a time
     };
 
 private:
@@ -89,6 +106,8 @@ private:
     bool make_room(const Share& share, uint64_t bytes);
     bool grant(Share& share);
     bool nobody_works() const;
+    bool nobody_may_begin() const;
+    bool is_inside(std::thread::id thread) const;
     static void close(Share& share);
 
     const uint64_t bytes_;
@@ -96,7 +115,7 @@ private:
     std::mutex mutex_; // guards the members below, and all shares
     std::condition_variable changed_;
     std::vector<Share*> shares_;
-    std::set<std::thread::id> waiting_; // threads that have come from within a Use
+    std::set<std::thread::id> waiting_; // threads that wait, in begin() or as a Waiting says
     uint64_t clock_ = 0;
 };
 

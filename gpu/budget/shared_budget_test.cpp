@@ -157,5 +157,24 @@ TEST(SharedBudget, IsNeverExceeded) {
         thread.join();
 }
 
+TEST(SharedBudget, AThreadLearnsThatItWaitsForOneThatWaitsForIt) {
+    SharedBudget budget(100);
+    User mine(budget, 60, 60), others(budget, 60, 60);
+    std::optional<Result<Use>> use(mine.begin());
+    const SharedBudget::Waiting waiting(budget);
+    EXPECT_FALSE(waiting.is_in_vain(std::this_thread::get_id())) << "nobody wants room";
+    std::atomic<bool> goes_on{true};
+    std::thread other([&] { EXPECT_FALSE(others.share.begin([&] { return goes_on.load(); })); });
+    while (!waiting.is_in_vain(other.get_id()))
+        std::this_thread::yield();
+    EXPECT_FALSE(waiting.is_in_vain(std::thread::id())) << "a thread that does not wait";
+    others.share.demand(40, 60); // as after an update
+    EXPECT_FALSE(waiting.is_in_vain(other.get_id())) << "there is room for it now";
+    others.share.demand(60, 60);
+    goes_on = false;
+    other.join();
+    use.reset();
+}
+
 } // namespace
 } // namespace ovc

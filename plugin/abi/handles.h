@@ -125,7 +125,7 @@ struct ovc_scene_t {
     ovc::Changes changes;                            // since the commit; none without a structure
     std::unique_ptr<ovc::Structure> structure;       // set by commit
     ovc::Submissions submissions;
-    ovc::SingleRays single_rays{turn, streaming};
+    ovc::SingleRays single_rays{turn};
     ovc::Gathering<const ovc::RayCall> batches; // of threads that ask at once
     std::atomic<std::thread::id> streaming;     // the thread that is inside stream(), if any
     ovc_stream_t stream;

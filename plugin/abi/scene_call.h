@@ -5,6 +5,7 @@
 #include "core/text/format_text.h"
 #include "plugin/abi/device.h"
 #include "plugin/abi/handles.h"
+#include "plugin/structure/in_stream.h"
 
 #include <cstddef>
 
@@ -62,6 +63,27 @@ ovc_result beside_scene(ovc_scene scene, const char* call, Body&& body) {
     throw Failure{OVC_ERROR_CANCELLED, format_text("{}: cancelled", call)};
 }
 
+/// Throws a Failure where this thread, which is inside a stream and waits for the scene's turn or
+/// for what is done in it, waits for a call that waits for the budget of that stream.
+inline void check_budget(ovc_scene scene, const SharedBudget::Waiting& waiting, const char* call) {
+    if (waiting.is_in_vain(scene->turn.owner()))
+        throw Failure{
+            OVC_ERROR_OUT_OF_BUDGET,
+            format_text("{}: the stream that it comes from leaves the scene no room in the "
+                        "budget that they share",
+                        call)};
+}
+
+/// As Turn::lock_while(). Throws a Failure where it would wait for ever.
+template <class GoesOn>
+bool lock_within_stream(ovc_scene scene, const char* call, GoesOn&& goes_on) {
+    const SharedBudget::Waiting waiting(scene->device->gl->budget());
+    return scene->turn.lock_while([&] {
+        check_budget(scene, waiting, call);
+        return goes_on();
+    });
+}
+
 /// Runs body() in the scene's turn, within beside_scene(). goes_on() is asked while other calls
 /// have the turn; where it returns false, this call throws the Failure of a cancelled one.
 template <class GoesOn, class Body>
@@ -71,7 +93,7 @@ void in_turn(ovc_scene scene, const char* call, GoesOn&& goes_on, Body&& body) {
                       format_text("{}: called from within the scene's own stream, where push "
                                   "is the only call on it",
                                   call)};
-    if (!scene->turn.lock_while(goes_on))
+    if (!(in_stream ? lock_within_stream(scene, call, goes_on) : scene->turn.lock_while(goes_on)))
         cancelled(call);
     const std::lock_guard turn(scene->turn, std::adopt_lock);
     if (scene->magic != kSceneMagic)

@@ -5,6 +5,7 @@
 #include "core/text/format_text.h"
 #include "plugin/abi/float_mode.h"
 #include "plugin/abi/query_call.h"
+#include "plugin/structure/in_stream.h"
 
 #include <algorithm>
 #include <cassert>
@@ -58,16 +59,19 @@ public:
         scene_->streaming = std::this_thread::get_id();
         scene_->stream.scene = scene;
         scene_->stream.magic = kStreamMagic;
+        in_stream = true;
     }
     ~Streaming() {
         scene_->stream.magic = 0;
         scene_->stream.filters.clear();
         scene_->streaming = std::thread::id();
+        in_stream = before_;
     }
     Streaming(const Streaming&) = delete;
 
 private:
     ovc_scene scene_;
+    const bool before_ = in_stream;
 };
 
 } // namespace

@@ -9,6 +9,7 @@
 
 #include <atomic>
 #include <cassert>
+#include <chrono>
 #include <condition_variable>
 #include <mutex>
 #include <string>
@@ -65,13 +66,15 @@ public:
     double progress() const { return progress_; }
 
     /// Returns the outcome, as soon as there is one. Where it is not done yet, calls may_wait()
-    /// first, which may throw; until that returns, it does not get done.
+    /// now and then, which may throw; until that returns, it does not get done.
     template <class MayWait>
     Outcome wait(MayWait&& may_wait) {
         std::unique_lock lock(mutex_);
-        if (!done_)
-            may_wait();
-        ended_.wait(lock, [&] { return done_; });
+        const auto is_done = [&] { return done_; };
+        do {
+            if (!done_)
+                may_wait();
+        } while (!ended_.wait_for(lock, std::chrono::milliseconds(20), is_done));
         return outcome_;
     }
     void wait_until_done() noexcept {

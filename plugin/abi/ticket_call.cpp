@@ -6,6 +6,7 @@
 #include "plugin/abi/submission.h"
 
 #include <cassert>
+#include <optional>
 
 namespace ovc {
 namespace {
@@ -84,11 +85,16 @@ ovc_result submit_occluded(ovc_scene scene, const ovc_ray* rays, size_t ray_coun
 
 ovc_result wait(ovc_ticket ticket) {
     return on_ticket(ticket, "wait", [&](Submission& submission) {
+        std::optional<SharedBudget::Waiting> waiting;
+        if (in_stream)
+            waiting.emplace(ticket->device->gl->budget());
         const Submission::Outcome outcome = submission.wait([&] {
             if (ticket->scene->streaming == std::this_thread::get_id())
                 throw Failure{OVC_ERROR_INVALID_STATE,
                               "wait: called from within the stream of the ticket's scene, which it "
                               "would wait for"};
+            if (waiting)
+                check_budget(ticket->scene, *waiting, "wait");
         });
         if (outcome.result != OVC_OK)
             throw Failure{outcome.result, outcome.message};

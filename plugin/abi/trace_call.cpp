@@ -4,6 +4,7 @@
 
 #include "plugin/abi/asked_progress.h"
 #include "plugin/abi/ray_call.h"
+#include "plugin/structure/in_stream.h"
 #include "plugin/structure/joined_rays.h"
 
 #include <exception>
@@ -35,11 +36,11 @@ bool answer_few(ovc_scene scene, const RayCall& call) {
                         : few.nearest(call.rays, without, call.hits);
 }
 
-/// Whether the call may be one of several in a pass. In certified precision it makes no difference
-/// which rays share it.
+/// Whether the call may be one of several in a pass, for which its thread may wait. In certified
+/// precision it makes no difference which rays share it.
 bool may_join(ovc_scene scene, const RayCall& call) {
-    return call.rays.size() <= kMaxJoinedRays && is_plain(scene, call) && !call.query.masks &&
-           scene->config.precision == OVC_PRECISION_CERTIFIED;
+    return call.rays.size() <= kMaxJoinedRays && !in_stream && is_plain(scene, call) &&
+           !call.query.masks && scene->config.precision == OVC_PRECISION_CERTIFIED;
 }
 
 /// Answers those of the calls that ask for any hit, or those that ask for the nearest, at once.

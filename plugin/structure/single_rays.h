@@ -7,6 +7,7 @@
 #include "core/system/turn.h"
 #include "plugin/structure/faster_way.h"
 #include "plugin/structure/gathering.h"
+#include "plugin/structure/in_stream.h"
 #include "plugin/structure/joined_rays.h"
 #include "plugin/structure/structure.h"
 
@@ -36,10 +37,8 @@ class SingleRays {
     struct Shard;
 
 public:
-    /// turn: the scene's. streaming: the thread that is inside the scene's stream, if any; it holds
-    /// the turn, and the functions of its host may ask for single rays. Both must outlive this.
-    SingleRays(Turn& turn, const std::atomic<std::thread::id>& streaming)
-        : turn_(turn), streaming_(streaming) {}
+    /// turn: the scene's, which outlives this.
+    explicit SingleRays(Turn& turn) : turn_(turn) {}
 
     /// Sets the structure that answers calls from now on; nullptr: none. When this returns, no call
     /// uses the structure before it any more.
@@ -165,9 +164,9 @@ private:
     /// Returns false where another call has the turn or the batch cannot be traced. Never waits for
     /// a call of another kind.
     bool gather(Structure& structure, SingleRay& asked) {
+        if (in_stream)
+            return false;
         return gathering_.answer(asked, [&](std::span<SingleRay* const> batch) {
-            if (streaming_ == std::this_thread::get_id())
-                return false;
             const std::unique_lock turn(turn_, std::try_to_lock);
             return turn.owns_lock() && trace(structure, batch, /* any_hit= */ false) &&
                    trace(structure, batch, /* any_hit= */ true);
@@ -199,7 +198,6 @@ private:
     }
 
     Turn& turn_;
-    const std::atomic<std::thread::id>& streaming_;
     std::atomic<Structure*> structure_{nullptr};
     FasterWay way_;
     Gathering<SingleRay> gathering_;

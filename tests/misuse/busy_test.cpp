@@ -12,6 +12,8 @@
 #include <chrono>
 #include <functional>
 #include <thread>
+#include <utility>
+#include <vector>
 
 namespace ovc {
 namespace {
@@ -174,6 +176,76 @@ TEST_F(Busy, ADeviceDestroyedWhileScenesAreMadeStaysOrGoesWhole) {
         api().destroy_scene(alive);
         api().destroy_device(other);
     }
+}
+
+/// Scenes of which the device has room for one at a time, and what is asked from within a stream of
+/// the first while another thread asks the second.
+struct Nested {
+    ovc_device device = nullptr;
+    ovc_scene scenes[2]{};
+    std::function<ovc_result(ovc_scene)> ask;
+    bool has_pushed = false;
+    std::vector<ovc_result> results;
+
+    static int more(void* self, ovc_stream stream, size_t) {
+        auto& nested = *static_cast<Nested*>(self);
+        const ovc_ray ray = test::into_cell(1, 1);
+        const uint64_t token = 0;
+        const bool pushes = !std::exchange(nested.has_pushed, true);
+        return pushes ? api().push(stream, &ray, &token, 1, 0, nullptr) : 0;
+    }
+    static int answered(void* self, ovc_stream, const ovc_stream_answers*) {
+        auto& nested = *static_cast<Nested*>(self);
+        // By now the other thread has the second scene's turn, and waits for room.
+        std::this_thread::sleep_for(std::chrono::milliseconds(300));
+        nested.results.push_back(nested.ask(nested.scenes[1]));
+        return 0;
+    }
+};
+
+TEST_F(Busy, AStreamsCallOnASceneThatWaitsForItsRoomIsRefused) {
+    auto config = sized<ovc_device_config>();
+    config.gpu_memory_bytes = 60000;
+    Nested nested;
+    ASSERT_EQ(api().create_device(&config, &nested.device), OVC_OK);
+    for (ovc_scene& scene : nested.scenes)
+        ASSERT_TRUE(scene = test::make_field(nested.device));
+    std::vector<ovc_ray> rays(5000, test::into_cell(2, 1));
+    std::vector<ovc_hit> hits(rays.size());
+    const auto intersect = [&](ovc_scene scene, size_t count) {
+        return api().intersect(scene, rays.data(), count, hits.data(), nullptr);
+    };
+    const std::function<ovc_result(ovc_scene)> asks[]{
+        [&](ovc_scene scene) { return intersect(scene, 100); }, // may share a pass
+        [&](ovc_scene scene) { return intersect(scene, 5000); },
+        [&](ovc_scene scene) {
+            ovc_ticket ticket = nullptr;
+            EXPECT_EQ(api().submit_intersect(scene, rays.data(), 10, hits.data(), nullptr, &ticket),
+                      OVC_OK);
+            const ovc_result result = api().wait(ticket);
+            api().release(ticket);
+            return result;
+        },
+    };
+    for (const auto& ask : asks) {
+        nested.ask = ask;
+        nested.has_pushed = false;
+        nested.results.clear();
+        std::thread other([&] {
+            std::this_thread::sleep_for(std::chrono::milliseconds(100));
+            EXPECT_TRUE(test::field_answers(nested.scenes[1]));
+        });
+        auto host = sized<ovc_stream_host>();
+        host.user = &nested;
+        host.more = Nested::more;
+        host.answered = Nested::answered;
+        EXPECT_EQ(api().stream(nested.scenes[0], &host), OVC_OK);
+        other.join();
+        EXPECT_THAT(nested.results, testing::ElementsAre(OVC_ERROR_OUT_OF_BUDGET));
+    }
+    for (ovc_scene scene : nested.scenes)
+        api().destroy_scene(scene);
+    api().destroy_device(nested.device);
 }
 
 } // namespace
