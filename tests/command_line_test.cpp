@@ -169,6 +169,45 @@ TEST_F(CommandLine, AFragmentVariantIsAKernelAsAnyOther) {
     EXPECT_EQ(result.output, asked("").output);
 }
 
+TEST_F(CommandLine, NeedsNobodyWhoTakesItsMessages) {
+    const std::string render = "render box --size 32x24 --progress p.json ";
+    ASSERT_EQ(overcast(render + "-o a.png").exit_code, 0);
+    for (const char* lost : {"2>&-", "2>/dev/full"}) {
+        const test::CommandResult result = overcast(render + "-o b.png " + lost);
+        EXPECT_EQ(result.exit_code, 0) << lost << result.output;
+        EXPECT_EQ(bytes("b.png"), bytes("a.png")) << lost;
+        EXPECT_EQ(bytes("p.json").front(), '{') << lost;
+    }
+    EXPECT_EQ(overcast("render no-such-scene 2>/dev/full").exit_code, 1);
+}
+
+TEST_F(CommandLine, TellsThatItsOutputIsLost) {
+    ASSERT_EQ(overcast("render box --size 8x8 -o a.png -q").exit_code, 0);
+    const std::pair<const char*, int> cases[] = {
+        {"bench box --size 8x8 --repeats 1 --only cpu-kdtree >/dev/full", 1},
+        {"diff a.png a.png >/dev/full", 4},
+        {"diff a.png a.png >&-", 4},
+        {"--version >/dev/full", 1},
+        {"render box --size 8x8 -o b.png -q --progress - >/dev/full", 1},
+        {"render box --size 8x8 -o c.png -q --progress /dev/full", 1}};
+    for (const auto& [arguments, code] : cases) {
+        const test::CommandResult result = overcast(arguments);
+        EXPECT_EQ(result.exit_code, code) << arguments;
+        EXPECT_THAT(result.output, testing::AnyOf(HasSubstr("cannot write to standard output"),
+                                                  HasSubstr("No space left")))
+            << arguments;
+    }
+    EXPECT_EQ(bytes("c.png"), bytes("a.png"));
+}
+
+TEST_F(CommandLine, AReaderOfProgressMayStop) {
+    const test::CommandResult result =
+        overcast("render box --size 64x64 --samples 16 -o a.png -q --progress p",
+                 "mkfifo p && { head -n 1 p >/dev/null & } &&");
+    EXPECT_EQ(result.exit_code, 0) << result.output;
+    EXPECT_TRUE(fs::exists(folder / "a.png"));
+}
+
 TEST_F(CommandLine, BadInputIsOneSentenceExitOneAndNothingWritten) {
     write("empty.ply", "");
     write("cut.ply", binary_ply_header(3, 1) + std::string(20, '\0'));

@@ -12,6 +12,9 @@
 
 #include <fmt/format.h>
 
+#include <cstdio>
+#include <system_error>
+
 namespace ovc {
 
 static constexpr Command kCommands[] = {
@@ -38,7 +41,7 @@ std::string exit_codes() {
            "of diff are others: see overcast diff --help.";
 }
 
-static void print_help() {
+static int print_help() {
     fmt::print(
         "Overcast finds where rays hit triangles, in scenes larger than the GPU's memory.\n\n"
         "Usage: overcast COMMAND [arguments]\n\nCommands:\n");
@@ -57,6 +60,7 @@ static void print_help() {
         "  echo 0 0 9  0 0 -1 | overcast trace dragon.ply   where one ray hits\n\n"
         "{}\n",
         exit_codes());
+    return kExitOk;
 }
 
 static Error unknown_command(std::string_view name) {
@@ -66,6 +70,21 @@ static Error unknown_command(std::string_view name) {
     const std::string hint = did_you_mean(name, names);
     return {fmt::format("there is no command '{}'{}", name,
                         hint.empty() ? "; see overcast --help" : hint)};
+}
+
+/// Does the work, and returns its exit code; an error where standard output did not take all of it.
+template <class Work>
+static Result<int> printing(const Work& work) {
+    const Error lost{"cannot write to standard output"};
+    try {
+        const Result<int> code = work();
+        const bool written = std::fflush(stdout) == 0 && !std::ferror(stdout);
+        return !code || written ? code : lost;
+    } catch (const std::system_error&) { // fmt throws where standard output takes nothing more
+        if (!std::ferror(stdout))
+            throw;
+        return lost;
+    }
 }
 
 static Result<int> run(const Command& command, const Arguments& arguments) {
@@ -84,7 +103,7 @@ static Result<int> run(const Command& command, const Arguments& arguments) {
 static Result<int> run_named(const std::string& name, const Arguments& arguments) {
     for (const Command& command : kCommands)
         if (command.name == name) {
-            const Result<int> code = run(command, arguments);
+            const Result<int> code = printing([&] { return run(command, arguments); });
             if (code || command.exit_on_error == kExitError)
                 return code;
             print_message(code.error().message);
@@ -99,28 +118,27 @@ static void print_part(bool is_there, std::string_view library, std::string_view
     fmt::print("{} {}: {}\n", is_there ? "with" : "without", library, is_there ? with : without);
 }
 
+static int print_version() {
+    fmt::print("overcast {}\n", version_text());
+    print_part(ScenePictures::library_is_there(), kTextureLibrary, "surfaces show image textures",
+               "surfaces show no image textures; it is built where OpenImageIO is installed "
+               "(Debian: libopenimageio-dev)");
+    print_part(Ranks::library_is_there(), kRankedProduct, "processes under mpirun share the work",
+               "processes under mpirun cannot share the work; it is built where MPI is installed "
+               "(Debian: libopenmpi-dev)");
+    return kExitOk;
+}
+
 Result<int> run_command(const Arguments& arguments) {
     if (arguments.empty())
         return Error{"no command given; see overcast --help"};
     const std::string& name = arguments.front();
     if (name == "help" && arguments.size() > 1)
         return run_named(arguments[1], {"--help"});
-    if (name == "--help" || name == "-h" || name == "help") {
-        print_help();
-        return kExitOk;
-    }
-    if (name == "--version" || name == "-V" || name == "version") {
-        fmt::print("overcast {}\n", version_text());
-        print_part(ScenePictures::library_is_there(), kTextureLibrary,
-                   "surfaces show image textures",
-                   "surfaces show no image textures; it is built where OpenImageIO is installed "
-                   "(Debian: libopenimageio-dev)");
-        print_part(
-            Ranks::library_is_there(), kRankedProduct, "processes under mpirun share the work",
-            "processes under mpirun cannot share the work; it is built where MPI is installed "
-            "(Debian: libopenmpi-dev)");
-        return kExitOk;
-    }
+    if (name == "--help" || name == "-h" || name == "help")
+        return printing(print_help);
+    if (name == "--version" || name == "-V" || name == "version")
+        return printing(print_version);
     return run_named(name, {arguments.begin() + 1, arguments.end()});
 }
 

@@ -8,8 +8,10 @@
 
 #include <fmt/format.h>
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <csignal>
-#include <cstdio>
 #include <exception>
 #include <new>
 #include <string>
@@ -22,7 +24,16 @@ static int fail(std::string_view sentence) {
     return ovc::kExitError;
 }
 
+/// Opens those of the standard files that are closed, each so that its use fails as if it still
+/// were. Else a file that is opened later would have their number, and messages would go into it.
+static void occupy_standard_files() {
+    for (const int file : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+        if (fcntl(file, F_GETFD) < 0)
+            open("/dev/full", O_WRONLY); // takes the smallest number that is free
+}
+
 int main(int argc, char** argv) {
+    occupy_standard_files();
     try {
         ovc::exit_on_interrupt();
         ovc::exit_on_bus_error();
@@ -30,13 +41,10 @@ int main(int argc, char** argv) {
         const ovc::Result<int> code = ovc::run_command({argv + 1, argv + argc});
         if (!code)
             return fail(code.error().message);
-        if (std::fflush(stdout) != 0)
-            return fail("cannot write to standard output");
         return *code;
     } catch (const std::bad_alloc&) {
         return fail("out of memory");
     } catch (const std::exception& error) {
-        // fmt throws when standard output takes nothing more.
-        return fail(std::ferror(stdout) ? "cannot write to standard output" : error.what());
+        return fail(error.what());
     }
 }

@@ -251,6 +251,13 @@ static Result<Done> open_window(const RenderJob& job, const ImageSize& size, Wat
     return Done{};
 }
 
+static void prepare_process(const RenderJob& job) {
+    if (job.view)
+        prepare_process(OVC_KERNEL_FRAGMENT); // llvmpipe's 512 bits crash where a window is drawn
+    else
+        prepare_process(job.backend);
+}
+
 /// there: whether each frame is there already.
 static Result<int> render_others(const RenderJob& job, const RankBytes& there, Watchers& watchers) {
     const Stopwatch total;
@@ -258,8 +265,7 @@ static Result<int> render_others(const RenderJob& job, const RankBytes& there, W
     const LogSink log = standard_error_log(job.log_level);
     tell_of_nothing_to_go_on_with(job, log);
     RenderStats stats;
-    if (!job.view) // Mesa's 512 bits crash where a window is drawn
-        prepare_process(job.backend);
+    prepare_process(job);
     DeviceOpening opening(job.backend);
     SceneCache cache(job.cache, job.scene, job.backend, job.size);
     Result<Scene> scene = cache.open(log);
@@ -325,10 +331,11 @@ Result<int> render(const RenderJob& job) {
         return lines.error();
     Watchers watchers{std::move(*lines), nullptr};
     const Result<int> code = render_others(job, *there, watchers);
-    watchers.lines.end(code && *code == kExitOk);
-    if (watchers.window && code && *code == kExitOk)
+    const bool complete = code && *code == kExitOk;
+    const Result<Done> told = watchers.lines.end(complete);
+    if (watchers.window && complete)
         watchers.window->wait([] { return true; }); // or Ctrl-C, which ends the program
-    return code;
+    return complete && !told ? Result<int>(told.error()) : code;
 }
 
 } // namespace ovc

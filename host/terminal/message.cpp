@@ -24,7 +24,13 @@ void print_message(std::string_view message) {
         text += "\n" + printable(message.substr(0, line_end(message)));
         message.remove_prefix(line_end(message));
     }
-    fmt::print(stderr, "{}\n", text);
+    write_to_standard_error(text + "\n");
+}
+
+void write_to_standard_error(const std::string& text) {
+    // fmt::print() would throw, through callbacks of the C ABI too.
+    std::fputs(text.c_str(), stderr);
+    std::fflush(stderr);
 }
 
 void print_lines(std::string_view lines) {

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include <cerrno>
+#include <csignal>
 #include <cstring>
 
 namespace ovc {
@@ -19,13 +20,17 @@ Result<ProgressLines> ProgressLines::open(const std::string& path) {
     lines.file_.reset(path == "-" ? stdout : std::fopen(path.c_str(), "w"));
     if (!lines.file_)
         return Error{fmt::format("--progress: cannot open '{}': {}", path, std::strerror(errno))};
+    lines.path_ = path;
+    if (path != "-")
+        std::signal(SIGPIPE, SIG_IGN); // a reader of the pipe that ends does not end the rendering
     return lines;
 }
 
 void ProgressLines::put(const std::string& line) {
-    // Where nobody reads any more, the rendering goes on.
-    std::fputs((line + "\n").c_str(), file_.get());
-    std::fflush(file_.get());
+    const bool written =
+        std::fputs((line + "\n").c_str(), file_.get()) >= 0 && std::fflush(file_.get()) == 0;
+    if (!written && failure_ == 0)
+        failure_ = errno;
 }
 
 void ProgressLines::progress(uint32_t frame, double share, const RenderReport& report) {
@@ -48,9 +53,13 @@ void ProgressLines::picture(uint32_t frame, const std::string& file, bool finish
                 .dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
 }
 
-void ProgressLines::end(bool complete) {
+Result<Done> ProgressLines::end(bool complete) {
     if (file_)
         put(nlohmann::ordered_json{{"event", "end"}, {"complete", complete}}.dump());
+    if (failure_ == 0 || failure_ == EPIPE)
+        return Done{};
+    return Error{
+        fmt::format("--progress: lines of '{}' are lost: {}", path_, std::strerror(failure_))};
 }
 
 } // namespace ovc

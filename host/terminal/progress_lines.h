@@ -24,8 +24,8 @@ public:
     /// Tells of a file that has been written. finished: it is what was asked for, and not the
     /// picture so far.
     void picture(uint32_t frame, const std::string& file, bool finished);
-    /// Tells that nothing follows.
-    void end(bool complete);
+    /// Tells that nothing follows. Error: lines were lost, and not because a reader had enough.
+    Result<Done> end(bool complete);
 
 private:
     struct Close {
@@ -37,7 +37,9 @@ private:
 
     void put(const std::string& line);
 
+    std::string path_;
     std::unique_ptr<std::FILE, Close> file_; // null: nobody listens
+    int failure_ = 0;                        // the errno of the first line that was lost
     Stopwatch watch_;
     double next_seconds_ = 0;
 };

@@ -2,7 +2,9 @@
 // Writes a carriage return, the text, and then "erase to the end of the line" (ECMA-48, EL).
 // Erasing first would flicker.
 #include "host/terminal/terminal_line.h"
+
 #include "core/text/printable.h"
+#include "host/terminal/message.h"
 
 #include <fmt/format.h>
 #include <sys/ioctl.h>
@@ -30,8 +32,7 @@ void TerminalLine::show(const std::string& text) {
     if (fitting == there_)
         return;
     there_ = fitting;
-    fmt::print(stderr, "\r{}\033[K", fitting);
-    std::fflush(stderr);
+    write_to_standard_error(fmt::format("\r{}\033[K", fitting));
 }
 
 std::string time_left(double seconds) {
