@@ -2,6 +2,7 @@
 // Chooses and sets the environment variables that Mesa reads.
 #include "gpu/driver/vector_width.h"
 
+#include <atomic>
 #include <cstdlib>
 #include <filesystem>
 #include <system_error>
@@ -48,7 +49,11 @@ static bool cpu_has_avx512() {
 #endif
 }
 
+/// What use_wide_vectors() was told.
+static std::atomic<bool> narrow_for_fragments{false};
+
 void use_wide_vectors(bool fragment_kernels) {
+    narrow_for_fragments = fragment_kernels;
     for (const auto& [name, value] :
          wide_vectors(std::getenv, cpu_has_avx512(), fragment_kernels)) {
         std::error_code error; // ignored: without the folder Mesa compiles each time
@@ -59,18 +64,24 @@ void use_wide_vectors(bool fragment_kernels) {
 }
 
 std::optional<std::string> advice_on_vectors(const std::string& renderer,
-                                             const GetVariable& variable, bool has_avx512) {
+                                             const GetVariable& variable, bool has_avx512,
+                                             bool fragment_kernels) {
     const bool is_narrow = renderer.find("llvmpipe") != std::string::npos &&
                            renderer.find("256 bits") != std::string::npos;
     if (!is_narrow || !has_avx512 || variable(kWidth))
         return std::nullopt;
-    return "llvmpipe compiles kernels for vectors of 256 bits, and this CPU has 512, at which "
-           "calls are up to 1.3 times as fast on some CPUs: call prepare_process() before the "
-           "first device, or set LP_NATIVE_VECTOR_WIDTH=512";
+    const std::string gain = "this CPU has 512, at which calls are up to 1.3 times as fast on some "
+                             "CPUs";
+    if (fragment_kernels)
+        return "llvmpipe compiles all kernels for vectors of 256 bits, because fragment shaders "
+               "are among them; for compute kernels alone " +
+               gain;
+    return "llvmpipe compiles kernels for vectors of 256 bits, and " + gain +
+           ": call prepare_process() before the first device, or set LP_NATIVE_VECTOR_WIDTH=512";
 }
 
 std::optional<std::string> advice_on_vectors(const std::string& renderer) {
-    return advice_on_vectors(renderer, std::getenv, cpu_has_avx512());
+    return advice_on_vectors(renderer, std::getenv, cpu_has_avx512(), narrow_for_fragments);
 }
 
 } // namespace ovc

@@ -26,10 +26,12 @@ std::map<std::string, std::string> wide_vectors(const GetVariable& variable, boo
 void use_wide_vectors(bool fragment_kernels);
 
 /// Returns what to tell a host whose software renderer, by this name, has vectors narrower than the
-/// CPU's, though nobody has chosen a width; nothing where there is nothing to tell.
+/// CPU's, though the environment names no width; nothing where there is nothing to tell.
+/// fragment_kernels: the host has said that it needs fragment shaders.
 std::optional<std::string> advice_on_vectors(const std::string& renderer,
-                                             const GetVariable& variable, bool has_avx512);
-/// The same for this process and its CPU.
+                                             const GetVariable& variable, bool has_avx512,
+                                             bool fragment_kernels);
+/// The same for this process and its CPU, and what use_wide_vectors() was told.
 std::optional<std::string> advice_on_vectors(const std::string& renderer);
 
 } // namespace ovc

@@ -48,7 +48,8 @@ TEST(VectorWidth, HasAFolderOfItsOwnForWhatMesaKeeps) {
 TEST(VectorWidth, IsAdvisedOnWhereNobodyHasChosen) {
     const auto has_advice = [](const char* renderer, const char* width, bool has_avx512) {
         const GetVariable variable = [&](const char*) { return width; };
-        return advice_on_vectors(renderer, variable, has_avx512).has_value();
+        return advice_on_vectors(renderer, variable, has_avx512, /* fragment_kernels= */ false)
+            .has_value();
     };
     const char* const narrow = "llvmpipe (LLVM 15.0.6, 256 bits)";
     EXPECT_TRUE(has_advice(narrow, nullptr, true));
@@ -56,6 +57,18 @@ TEST(VectorWidth, IsAdvisedOnWhereNobodyHasChosen) {
     EXPECT_FALSE(has_advice(narrow, "256", true));
     EXPECT_FALSE(has_advice("llvmpipe (LLVM 15.0.6, 512 bits)", nullptr, true));
     EXPECT_FALSE(has_advice("NVIDIA H200", nullptr, true));
+}
+
+/// llvmpipe would crash at 512 bits on the fragment shaders of a host that has said it has some.
+TEST(VectorWidth, IsNotAdvisedOnWhereThereAreFragmentShaders) {
+    const auto unset = [](const char*) { return nullptr; };
+    const std::string advice =
+        advice_on_vectors("llvmpipe (LLVM 15.0.6, 256 bits)", unset, /* has_avx512= */ true,
+                          /* fragment_kernels= */ true)
+            .value_or("");
+    EXPECT_THAT(advice, testing::HasSubstr("fragment shaders"));
+    EXPECT_THAT(advice, testing::Not(testing::HasSubstr("prepare_process")));
+    EXPECT_THAT(advice, testing::Not(testing::HasSubstr("LP_NATIVE_VECTOR_WIDTH")));
 }
 
 } // namespace

@@ -39,9 +39,12 @@ static bool needs_device(const BackendOptions& options) {
 }
 
 void prepare_process(const BackendOptions& options) {
-    // The thesis' systems have fragment kernels.
-    if (!needs_device(options) || structure_of(options.kind) != OVC_STRUCTURE_TWO_LEVEL)
+    if (!needs_device(options))
         return;
+    if (structure_of(options.kind) != OVC_STRUCTURE_TWO_LEVEL) {
+        prepare_process(OVC_KERNEL_FRAGMENT, kThesis); // its systems have fragment kernels
+        return;
+    }
     const bool is_fragment = options.kernel_variant.starts_with("fragment");
     prepare_process(is_fragment ? OVC_KERNEL_FRAGMENT : options.kernel);
 }

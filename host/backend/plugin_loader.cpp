@@ -61,8 +61,8 @@ Result<const ovc_api*> load_plugin(const std::string& library) {
     return load_from(find_plugin(is_ranked ? kRankedProduct : library));
 }
 
-void prepare_process(ovc_kernel kernel) {
-    if (const Result<const ovc_api*> api = load_plugin())
+void prepare_process(ovc_kernel kernel, const std::string& library) {
+    if (const Result<const ovc_api*> api = load_plugin(library))
         (*api)->prepare_process(kernel); // where it comes too late, the log tells what that costs
 }
 

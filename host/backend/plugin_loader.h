@@ -27,9 +27,9 @@ std::string find_plugin(const std::string& library = kProduct);
 /// the product. It stays loaded until the program ends.
 Result<const ovc_api*> load_plugin(const std::string& library = kProduct);
 
-/// Lets the product prepare the process for scenes that ask for this kernel; see overcast.h. A
+/// Lets a library prepare the process for scenes that ask for this kernel; see overcast.h. A
 /// library that cannot be loaded is told of where a device is opened.
-void prepare_process(ovc_kernel kernel);
+void prepare_process(ovc_kernel kernel, const std::string& library = kProduct);
 
 struct DestroyDevice {
     const ovc_api* api = nullptr;

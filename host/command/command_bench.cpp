@@ -203,15 +203,21 @@ Result<Done> bench_tolerance(const BenchJob& job, const BenchSurroundings& aroun
     return save(job, tessellation_json(*r));
 }
 
-/// Returns whether any contender needs the narrower vectors: all share a process, and so a width.
-bool any_fragment_kernel(const std::vector<Contender>& contenders) {
-    return std::ranges::any_of(contenders, [](const Contender& c) {
-        return c.on_gpu() && (c.kernel == OVC_KERNEL_FRAGMENT || c.kind == ContenderKind::Thesis);
-    });
+/// All contenders share a process, and so the width of vectors. Fragment kernels need the narrower.
+void prepare_process_for(const std::vector<Contender>& contenders) {
+    const auto any = [&](const auto& matches) { return std::ranges::any_of(contenders, matches); };
+    const bool any_thesis = any([](const Contender& c) { return c.kind == ContenderKind::Thesis; });
+    const bool any_fragment =
+        any([](const Contender& c) { return c.on_gpu() && c.kernel == OVC_KERNEL_FRAGMENT; });
+    prepare_process(any_thesis || any_fragment ? OVC_KERNEL_FRAGMENT : OVC_KERNEL_AUTO);
+    if (any_thesis)
+        prepare_process(OVC_KERNEL_FRAGMENT, kThesis);
 }
 
 Result<Done> bench_kind(const BenchJob& job, const BenchSurroundings& around) {
-    if (job.kind != BenchKind::Contenders || !any_fragment_kernel(job.contenders))
+    if (job.kind == BenchKind::Contenders)
+        prepare_process_for(job.contenders);
+    else
         prepare_process(OVC_KERNEL_AUTO);
     switch (job.kind) {
     case BenchKind::Bars:

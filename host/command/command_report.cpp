@@ -3,6 +3,7 @@
 #include "host/arguments/arguments.h"
 #include "host/arguments/backend_arguments.h"
 #include "host/arguments/memory_size.h"
+#include "host/backend/device_opening.h"
 #include "host/command/command.h"
 #include "host/output/output.h"
 #include "host/report/make_report.h"
@@ -13,6 +14,7 @@
 #include "host/suites/stability/stability_meshes.h"
 #include "host/suites/stability/stability_table.h"
 #include "host/terminal/interrupt.h"
+#include "host/terminal/message.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -64,9 +66,9 @@ struct ReportArguments {
     std::string data;
     std::string compare;
     std::string kit;
-    std::string backend = "two-level";
+    std::string backend; // empty: two-level
     std::string device;
-    std::string kernel = "auto";
+    std::string kernel;
     std::string times;
     std::string rays;
     std::string name_part;
@@ -108,7 +110,8 @@ Result<StabilityOptions> options_of(const ReportArguments& given) {
             return times.error();
         options.times = *times;
     }
-    const Result<BackendKind> kind = parse_backend(given.backend);
+    const Result<BackendKind> kind =
+        parse_backend(given.backend.empty() ? "two-level" : given.backend);
     if (!kind)
         return kind.error();
     options.backend.kind = *kind;
@@ -238,14 +241,16 @@ bool all_right(const Results& results) {
 /// Prints a line for each case, on a terminal alone. It overwrites the line while the case runs.
 void print_progress(const StabilityResult& r, bool finished) {
     if (isatty(STDERR_FILENO))
-        fmt::print(stderr, "\r{}: {} rays, {} wrong, {} leaks\033[K{}", r.name, human_count(r.rays),
-                   r.certified.wrong + r.wrong_occlusions, r.certified.leaks, finished ? "\n" : "");
+        write_to_standard_error(fmt::format(
+            "\r{}: {} rays, {} wrong, {} leaks\033[K{}", r.name, human_count(r.rays),
+            r.certified.wrong + r.wrong_occlusions, r.certified.leaks, finished ? "\n" : ""));
 }
 
 void print_progress(const OpticsResult& r) {
     if (isatty(STDERR_FILENO))
-        fmt::print(stderr, "{}: {} rays, {} wrong, {} leaks\n", r.name, human_count(r.score.rays),
-                   r.score.wrong, r.score.leaks);
+        write_to_standard_error(fmt::format("{}: {} rays, {} wrong, {} leaks\n", r.name,
+                                            human_count(r.score.rays), r.score.wrong,
+                                            r.score.leaks));
 }
 
 /// Runs all cases in turn, and calls `seen` after each with the results so far.
@@ -286,6 +291,7 @@ Result<int> make_report(const Report& report, const std::string& folder) {
     if (!folder.empty())
         if (const Result<Done> made = make_folder(folder, report); !made)
             return made.error();
+    prepare_process(report.options.backend); // so that kernels are those that render has
     const InterruptGuard interrupt;
     Result<Done> saved = Done{};
     const Result<Results> results = run_all(report, interrupt, [&](const Results& so_far) {
@@ -308,7 +314,8 @@ Result<Done> check_page_words(const ReportArguments& given) {
         return Error{"the report needs a folder: overcast report -o DIR"};
     for (const auto& [name, text] :
          {std::pair("--times", &given.times), std::pair("--rays", &given.rays),
-          std::pair("--case", &given.name_part), std::pair("--device", &given.device)})
+          std::pair("--case", &given.name_part), std::pair("--backend", &given.backend),
+          std::pair("--device", &given.device), std::pair("--kernel", &given.kernel)})
         if (!text->empty())
             return Error{fmt::format("{} goes with --only stability, leaks or grid", name)};
     for (const auto& [name, folder] :

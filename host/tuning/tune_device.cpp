@@ -2,6 +2,7 @@
 #include "host/tuning/tune_device.h"
 
 #include "host/backend/backend.h"
+#include "host/backend/device_opening.h"
 #include "host/bench/ray_sets.h"
 #include "host/scene/scene_source.h"
 
@@ -17,14 +18,15 @@ constexpr uint32_t kSide = 512;                                 // pixels
 
 Result<Done> tune_device(const std::string& device,
                          const std::function<void(const std::string&)>& tell) {
+    BackendOptions options;
+    options.kind = BackendKind::TwoLevel;
+    options.device = device;
+    prepare_process(options); // what is kept is for renderers of the same width alone
     for (const char* name : kScenes) {
         Result<Scene> scene = open_scene(name, LogSink());
         if (!scene)
             return scene.error();
         const Camera camera = own_or_framing_camera(*scene, kSide, kSide);
-        BackendOptions options;
-        options.kind = BackendKind::TwoLevel;
-        options.device = device;
         options.kernel_variant = "default";
         const Result<std::unique_ptr<Backend>> reference =
             make_backend(scene->soup, options, LogSink());
