@@ -104,12 +104,16 @@ Image picture_of(const Comparison& comparison, double scale, bool as_codes) {
     return image;
 }
 
-/// Returns the differences of all other channels, for a format that has layers.
+/// Returns the differences of all other channels, for a format that has layers. That of opacity has
+/// another name, for the picture itself is opaque.
 std::vector<Layer> other_layers(const Comparison& comparison) {
     std::vector<Layer> layers;
     for (const Layer& layer : comparison.differences)
-        if (layer.name.find_first_not_of("RGBA") != std::string::npos || layer.name.size() > 1)
+        if (layer.name.find_first_not_of("RGB") != std::string::npos || layer.name.size() > 1) {
             layers.push_back(layer);
+            if (layer.name == "A")
+                layers.back().name = "opacity";
+        }
     return layers;
 }
 
@@ -122,7 +126,7 @@ public:
         app.add_option("B", b_, "Another of the same size")->required();
         app.add_option("-o,--output", output_,
                        "The difference of each channel, without its sign: .png of the colors, .exr "
-                       "of all channels")
+                       "of all channels, that of A as opacity")
             ->type_name("FILE");
         app.add_option("--scale", scale_,
                        "The colors of that file are so many times the difference; default: 1")
@@ -175,6 +179,8 @@ private:
                                                   a.width, a.height, b_, b.width, b.height));
         if (a.coding != b.coding)
             encode_srgb(a.coding == Coding::Linear ? a : b);
+        else if (a.coding == Coding::Srgb)
+            add_opacity(a, b);
         const Comparison comparison = compare(a, b);
         if (comparison.layers.empty())
             return cannot_be_compared(fmt::format("{} and {} have no channel in common", a_, b_));

@@ -16,6 +16,7 @@
 #include <cstring>
 #include <fstream>
 #include <iterator>
+#include <utility>
 
 namespace ovc {
 
@@ -62,13 +63,21 @@ Result<Channels> read_channels(const fs::path& path) {
     stream.read(magic, sizeof(magic));
     Result<Channels> channels = Error{"found neither PNG nor OpenEXR"};
     if (std::memcmp(magic, "\x89PNG", 4) == 0) {
-        stream.seekg(0);
-        const std::vector<char> file((std::istreambuf_iterator<char>(stream)), {});
+        std::vector<char> file(magic, magic + sizeof(magic)); // a pipe cannot go back
+        file.insert(file.end(), std::istreambuf_iterator<char>(stream), {});
         channels = png_channels({reinterpret_cast<const uint8_t*>(file.data()), file.size()});
     } else if (std::memcmp(magic, "\x76\x2f\x31\x01", 4) == 0) {
         channels = read_exr(path);
     }
     return channels ? std::move(channels) : failed(channels.error().message);
+}
+
+void add_opacity(Channels& a, Channels& b) {
+    assert(a.coding == Coding::Srgb && b.coding == Coding::Srgb);
+    for (const auto& [to, from] : {std::pair(&a, &b), std::pair(&b, &a)})
+        if (from->find("A") && !to->find("A"))
+            to->all.push_back({"A", Layer::Type::Float,
+                               std::vector<uint32_t>(to->size(), std::bit_cast<uint32_t>(1.0f))});
 }
 
 void encode_srgb(Channels& channels) {

@@ -35,7 +35,10 @@ Result<Channels> read_channels(const std::filesystem::path& path);
 /// rounding.
 void encode_srgb(Channels& channels);
 
-/// Returns the channels of the first part of an .exr file, halves as floats. Error: what is wrong,
+/// Gives opacity, which is 1 everywhere, to a .png without it beside one that has it.
+void add_opacity(Channels& a, Channels& b);
+
+/// Returns the channels of an .exr file of one part, halves as floats. Error: what is wrong,
 /// without the file's name.
 Result<Channels> read_exr(const std::filesystem::path& path);
 

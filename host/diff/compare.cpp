@@ -30,7 +30,17 @@ std::string layer_of(const std::string& channel) {
         return channel.substr(0, dot);
     if (channel == "A")
         return "opacity";
-    return channel.size() == 1 ? "color" : channel;
+    return channel == "R" || channel == "G" || channel == "B" ? "color" : channel;
+}
+
+/// Whole numbers are equal or not, also beside floats, as which other programs may write them.
+bool are_whole(const Layer& a, const Layer& b) {
+    return a.type == Layer::Type::Uint || b.type == Layer::Type::Uint;
+}
+
+double number_of(const Layer& layer, size_t i) {
+    return layer.type == Layer::Type::Uint ? double(layer.values[i])
+                                           : double(std::bit_cast<float>(layer.values[i]));
 }
 
 /// Adds up the channels of one layer.
@@ -41,8 +51,7 @@ public:
     /// Adds one more channel, and returns the distance in each pixel.
     std::vector<float> add(const Layer& a, const Layer& b, uint32_t width) {
         result_.channels.push_back(a.name);
-        return a.type == Layer::Type::Uint || b.type == Layer::Type::Uint ? add_whole(a, b)
-                                                                          : add_real(a, b, width);
+        return are_whole(a, b) ? add_whole(a, b) : add_real(a, b, width);
     }
 
     LayerDifference result() const {
@@ -60,7 +69,7 @@ private:
     std::vector<float> add_whole(const Layer& a, const Layer& b) {
         std::vector<float> distances(a.values.size());
         for (size_t i = 0; i < distances.size(); ++i)
-            if (a.type != b.type || a.values[i] != b.values[i]) {
+            if (number_of(a, i) != number_of(b, i)) {
                 unequal_[i] = true;
                 distances[i] = float(kInfinity);
             }
@@ -141,9 +150,9 @@ std::optional<Flip> flip_of(const Channels& a, const Channels& b) {
 }
 
 /// Takes one more channel into the differences and into each pixel's worst.
-void take(Comparison& comparison, const Layer& channel, const std::vector<float>& distances) {
-    Layer difference{channel.name, Layer::Type::Float, std::vector<uint32_t>(distances.size())};
-    const bool whole = channel.type == Layer::Type::Uint;
+void take(Comparison& comparison, const std::string& channel, bool whole,
+          const std::vector<float>& distances) {
+    Layer difference{channel, Layer::Type::Float, std::vector<uint32_t>(distances.size())};
     for (size_t i = 0; i < distances.size(); ++i) {
         comparison.worst[i] = std::max(comparison.worst[i], distances[i]);
         difference.values[i] =
@@ -178,7 +187,8 @@ Comparison compare(const Channels& a, const Channels& b) {
             names.push_back(name);
             sums.emplace_back(name, a.size());
         }
-        take(comparison, channel, sums[at].add(channel, *other, a.width));
+        take(comparison, channel.name, are_whole(channel, *other),
+             sums[at].add(channel, *other, a.width));
     }
     for (const LayerSum& sum : sums)
         comparison.layers.push_back(sum.result());

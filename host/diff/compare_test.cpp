@@ -55,6 +55,36 @@ TEST(Compare, AddsUpEachLayer) {
     EXPECT_EQ(c.over(0.2), 2u);
 }
 
+TEST(Compare, OnlyRedGreenAndBlueAreColor) {
+    const Comparison c = compare(four_pixels({reals("R", {0, 0, 0, 0}), reals("Z", {1, 1, 1, 1})}),
+                                 four_pixels({reals("R", {0, 0, 0, 0}), reals("Z", {9, 1, 1, 1})}));
+    ASSERT_EQ(c.layers.size(), 2u);
+    EXPECT_EQ(c.layers[0].name, "color");
+    EXPECT_EQ(c.layers[0].differing, 0u);
+    EXPECT_EQ(c.layers[1].name, "Z");
+    EXPECT_EQ(c.layers[1].errors->mean, 2);
+}
+
+TEST(Compare, WholeNumbersMayStandInFloats) {
+    const Layer whole{"id", Layer::Type::Uint, {7, 8, 9, 10}};
+    const Layer floats = reals("id", {7, 8, 9, 11});
+    for (const auto& [a, b] : {std::pair(whole, floats), std::pair(floats, whole)}) {
+        const Comparison c = compare(four_pixels({a}), four_pixels({b}));
+        EXPECT_EQ(c.layers[0].differing, 1u);
+        EXPECT_FALSE(c.layers[0].errors);
+        EXPECT_EQ(std::bit_cast<float>(c.differences[0].values[3]), 1);
+    }
+}
+
+TEST(Compare, APngWithoutOpacityIsOpaque) {
+    Channels a{2, 2, Coding::Srgb, {reals("R", {0, 0, 0, 0}), reals("A", {1, 1, 0.5f, 1})}};
+    Channels b{2, 2, Coding::Srgb, {reals("R", {0, 0, 0, 0})}};
+    add_opacity(a, b);
+    const Comparison c = compare(a, b);
+    EXPECT_EQ(c.only_in_a.size() + c.only_in_b.size(), 0u);
+    EXPECT_EQ(judge(c, {}), Verdict::Failure);
+}
+
 TEST(Compare, WhatIsNoNumberIsInfinitelyFar) {
     const Comparison c = compare(four_pixels({reals("depth.Z", {1, 1, 1, 1})}),
                                  four_pixels({reals("depth.Z", {1, NAN, INFINITY, 1})}));

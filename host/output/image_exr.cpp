@@ -11,6 +11,7 @@
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfIO.h>
 #include <OpenEXR/ImfInputFile.h>
+#include <OpenEXR/ImfMultiPartInputFile.h>
 #include <OpenEXR/ImfOutputFile.h>
 #include <OpenEXR/ImfStringAttribute.h>
 
@@ -128,6 +129,8 @@ static Result<Channels> read_all(Imf::InputFile& file) {
 
 Result<Channels> read_exr(const std::filesystem::path& path) {
     try {
+        if (const int parts = Imf::MultiPartInputFile(path.c_str()).parts(); parts > 1)
+            return Error{fmt::format("found an OpenEXR picture of {} parts, expected one", parts)};
         Imf::InputFile file(path.c_str());
         return read_all(file);
     } catch (const std::exception& e) {
