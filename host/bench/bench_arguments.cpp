@@ -301,12 +301,37 @@ static bool takes_most(const BenchWords& words, BenchKind kind) {
            (kind == BenchKind::Pictures && words.pictures == kPictures[0]);
 }
 
+/// Returns the option that asks for a table other than that of contenders.
+static const char* table_option(const BenchWords& words) {
+    return words.bars               ? "--bars"
+           : words.programs         ? "--programs"
+           : words.pictures.empty() ? "--sweep"
+                                    : "--pictures";
+}
+
+/// Refuses the options of contenders beside the option of another table.
+static Result<Done> check_contender_words(const BenchWords& words, const char* option) {
+    // Whole programs choose their device themselves.
+    const bool any_device = words.programs || words.pictures == kPictures[0];
+    for (const auto& [name, is_given] :
+         {std::pair("--only", !words.only.empty()), std::pair("--leaves", !words.leaves.empty()),
+          std::pair("--instances", !words.instances.empty()),
+          std::pair("--workloads", !words.workloads.empty()),
+          std::pair("--float-rays", words.float_rays),
+          std::pair("--gpu-memory", !words.gpu_memory.empty()),
+          std::pair("--host-memory", !words.host_memory.empty()),
+          std::pair("--resident", !words.resident.empty()),
+          std::pair("--kernel-variant", !words.kernel_variant.empty()),
+          std::pair("--ranks-own", !words.ranks_own.empty()),
+          std::pair("--device", any_device && !words.device.empty())})
+        if (is_given)
+            return Error{
+                fmt::format("{} chooses what is measured itself, without {}", option, name)};
+    return Done{};
+}
+
 /// Finds out which kind is asked for, and refuses options that belong to another kind.
 static Result<Done> understand_kind(const BenchWords& words, BenchJob& job) {
-    const char* option = words.bars               ? "--bars"
-                         : words.programs         ? "--programs"
-                         : words.pictures.empty() ? "--sweep"
-                                                  : "--pictures";
     job.kind = words.bars                ? BenchKind::Bars
                : words.programs          ? BenchKind::Programs
                : !words.sweep.empty()    ? BenchKind::Sweep
@@ -318,14 +343,9 @@ static Result<Done> understand_kind(const BenchWords& words, BenchJob& job) {
             "samples"};
     if (job.kind == BenchKind::Contenders)
         return Done{};
-    for (const auto& [name, text] :
-         {std::pair("--only", &words.only), std::pair("--leaves", &words.leaves),
-          std::pair("--instances", &words.instances), std::pair("--workloads", &words.workloads),
-          std::pair("--gpu-memory", &words.gpu_memory),
-          std::pair("--host-memory", &words.host_memory), std::pair("--resident", &words.resident)})
-        if (!text->empty())
-            return Error{
-                fmt::format("{} chooses what is measured itself, without {}", option, name)};
+    const char* const option = table_option(words);
+    if (const Result<Done> fine = check_contender_words(words, option); !fine)
+        return fine;
     if (job.kind == BenchKind::Sweep)
         return understand_sweep(words, job);
     if (job.kind == BenchKind::Pictures)
@@ -406,8 +426,10 @@ Result<BenchJob> understand_bench(const BenchWords& words) {
     if (!size)
         return size.error();
     job.size = *size;
-    if (job.kind == BenchKind::Pictures && size->width != size->height)
-        return Error{fmt::format("--pictures draws squares, such as 256x256, not {}", size_words)};
+    const bool draws_squares = job.kind != BenchKind::Contenders && job.kind != BenchKind::Sweep;
+    if (draws_squares && size->width != size->height)
+        return Error{fmt::format("{} draws squares, such as 256x256, not {}", table_option(words),
+                                 size_words)};
     if (job.kind == BenchKind::Pictures)
         job.most = kDefaultSamples;
     const Result<uint64_t> repeats = parse_count("--repeats", words.repeats, 1, 1000);
