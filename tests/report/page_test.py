@@ -248,6 +248,18 @@ class Page(unittest.TestCase):
         self.assertIn("<text", self.html)
         self.assertEqual(len(self.page.ids), len(set(self.page.ids)))
 
+    def test_names_are_shown_as_they_are(self):
+        import draw
+        for name in ('a"b<i>&c', "$x^{2$", r"\1\g<0>"):
+            panel = draw.Panel("names", name)
+            panel.points(0, name, [(1, 1)])
+            panel.legend()
+            svg = panel.svg()
+            self.assertEqual(html.unescape(re.search('aria-label="([^"]*)"', svg)[1]), name)
+            reader = Reader()
+            reader.feed(f"<body>{svg}</body>")
+            self.assertEqual([text for _, text in reader.texts].count(name), 2)
+
     def test_compares_two_reports(self):
         with tempfile.TemporaryDirectory() as name:
             other = pathlib.Path(name)

@@ -4,6 +4,8 @@ import data
 import draw
 from page import Section, Table, listed, words
 
+# What a sweep is over, as a title and as an axis say it.
+SWEPT = {"budget": ("the budget grows", "budget, % of the bytes of all pages")}
 SWITCHES = {"shadows": "shadow rays", "bounces": "reflection and refraction", "cutouts": "cut-out "
 "leaves",
             "proofs": "proofs of answers", "queues": "queues of rays between leaves",
@@ -148,8 +150,9 @@ def growth_section(f):
     panels, table = [], Table("Exponents of the power laws that fit, and their intervals", [
         "as … grow: what", "scene", "exponent", "interval", "seconds at the last row"], [])
     for s, sweep in enumerate(figures["sweeps"]):
-        panel = draw.Panel(f"growth-{sweep['over']}", f"As {sweep['over']} grow", sweep["over"],
-                           "seconds", size=(4.0, 2.8)).log("x").log("y")
+        grows, axis = SWEPT.get(sweep["over"], (f"{sweep['over']} grow", sweep["over"]))
+        panel = draw.Panel(f"growth-{sweep['over']}", f"As {grows}", axis, "seconds",
+                           size=(4.0, 2.8)).log("x").log("y")
         for c, column in enumerate(sweep["columns"]):
             fit = column["fit"]
             label = column["name"].removesuffix(" s")

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Draws panels of figures as SVG whose text is text and whose colours are the page's."""
+import html
 import io
 import math
 import re
@@ -16,6 +17,9 @@ matplotlib.rcParams.update({
     "grid.linewidth": 0.6,
     "axes.edgecolor": "#010203", "axes.labelcolor": "#010203", "xtick.color": "#010203",
     "ytick.color": "#010203", "text.color": "#010203", "grid.color": "#040506"})
+
+if "text.parse_math" in matplotlib.rcParams:  # since 3.6; names of scenes may have dollars
+    matplotlib.rcParams["text.parse_math"] = False
 
 # Colours that stand for variables of the page's style, which has them light and dark.
 INK, GRID = "#010203", "#040506"
@@ -125,8 +129,9 @@ class Panel:
         svg = text.getvalue()
         svg = svg[svg.index("<svg"):]
         svg = re.sub(r"<metadata>.*?</metadata>", "", svg, flags=re.DOTALL)
-        svg = re.sub(r'<svg [^>]*viewBox="([^"]*)"[^>]*>',
-                     rf'<svg viewBox="\1" role="img" aria-label="{self.title}">', svg, count=1)
+        label = html.escape(self.title)
+        svg = re.sub(r'<svg [^>]*viewBox="([^"]*)"[^>]*>', lambda found:
+                     f'<svg viewBox="{found[1]}" role="img" aria-label="{label}">', svg, count=1)
         svg = re.sub(r'\bid="([^"]*)"', rf'id="{self.name}-\1"', svg)
         svg = re.sub(r'(url\(|href=")#', rf"\1#{self.name}-", svg)
         for color, variable in STANDS_FOR.items():
