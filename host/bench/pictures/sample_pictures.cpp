@@ -91,10 +91,12 @@ private:
     fs::path dat() const { return folder_ / "mesh.dat"; }
 
     Result<Done> write_scenes(const Soup& soup) {
-        const ProgramShot shot = shot_of(hittable_bounds(soup), job_.size);
-        if (const Result<Done> saved = save_text(povray_scene(soup, shot), pov()); !saved)
+        const Result<ProgramShot> shot = shot_of(hittable_bounds(soup), job_.size);
+        if (!shot)
+            return shot.error();
+        if (const Result<Done> saved = save_text(povray_scene(soup, *shot), pov()); !saved)
             return saved;
-        return save_text(tachyon_scene(soup, shot), dat());
+        return save_text(tachyon_scene(soup, *shot), dat());
     }
 
     template <class Make>

@@ -25,11 +25,13 @@ static std::string comma_list(const dvec3& v) {
     return fmt::format("{},{},{}", v.x, v.y, v.z);
 }
 
-ProgramShot shot_of(const Box& bounds, uint32_t size) {
+Result<ProgramShot> shot_of(const Box& bounds, uint32_t size) {
+    if (bounds.empty())
+        return Error{"there is nothing to draw: the scene has no triangles"};
     const dvec3 center = 0.5 * (bounds.lo + bounds.hi);
     const double extent = max_component(bounds.hi - bounds.lo);
-    return {center + extent * dvec3(0.3, 0.4, 1.6), center, 40, center + extent * dvec3(-1, 2, 2),
-            size};
+    return ProgramShot{center + extent * dvec3(0.3, 0.4, 1.6), center, 40,
+                       center + extent * dvec3(-1, 2, 2), size};
 }
 
 std::string povray_scene(const Soup& soup, const ProgramShot& shot) {
@@ -148,10 +150,12 @@ Result<Racer> tachyon(const Soup& soup, const ProgramShot& shot,
 Result<ProgramsResult> race_programs(const std::string& mesh, const Soup& soup, uint32_t size,
                                      uint32_t runs, const std::filesystem::path& folder,
                                      const StopRequest& stop) {
-    const ProgramShot shot = shot_of(hittable_bounds(soup), size);
-    std::vector<Racer> racers = {overcast(mesh, shot, folder)};
+    const Result<ProgramShot> shot = shot_of(hittable_bounds(soup), size);
+    if (!shot)
+        return shot.error();
+    std::vector<Racer> racers = {overcast(mesh, *shot, folder)};
     for (const auto& make : {povray, tachyon}) {
-        Result<Racer> racer = make(soup, shot, folder);
+        Result<Racer> racer = make(soup, *shot, folder);
         if (!racer)
             return racer.error();
         racers.push_back(std::move(*racer));

@@ -41,7 +41,8 @@ struct ProgramsResult {
 };
 
 /// Returns a camera in front of the bounds and a little above, with a light from their upper left.
-ProgramShot shot_of(const Box& bounds, uint32_t size);
+/// Error: the bounds are empty.
+Result<ProgramShot> shot_of(const Box& bounds, uint32_t size);
 
 /// Return the scene in the language of POV-Ray and of Tachyon. POV-Ray's mesh2 shares vertices, as
 /// a file of vertices and faces does; Tachyon's triangles cannot.

@@ -38,13 +38,13 @@ Soup two_triangles() {
 }
 
 TEST(Programs, ShareVerticesForPovray) {
-    const std::string text = povray_scene(two_triangles(), shot_of({dvec3(0), dvec3(1)}, 512));
+    const std::string text = povray_scene(two_triangles(), *shot_of({dvec3(0), dvec3(1)}, 512));
     EXPECT_THAT(text, testing::HasSubstr("vertex_vectors {\n4,\n<0,0,0>"));
     EXPECT_THAT(text, testing::HasSubstr("face_indices {\n2,\n<0,1,2>,\n<1,3,2>\n}"));
 }
 
 TEST(Programs, MirrorTheMeshForTachyon) {
-    const std::string text = tachyon_scene(two_triangles(), shot_of({dvec3(0), dvec3(1)}, 512));
+    const std::string text = tachyon_scene(two_triangles(), *shot_of({dvec3(0), dvec3(1)}, 512));
     EXPECT_THAT(text, testing::HasSubstr("RESOLUTION 512 512"));
     EXPECT_THAT(text, testing::HasSubstr("TRI V0 1 0 -0 V1 1 1 -0.5 V2 0 1 -0 plain"));
 }

@@ -40,7 +40,7 @@ static std::string last_line(const std::string& text) {
     std::istringstream lines(text);
     std::string last = "without a word";
     for (std::string line; std::getline(lines, line);)
-        if (!line.empty())
+        if (!line.empty() && line.front() != ' ')
             last = line;
     return last;
 }

@@ -18,7 +18,7 @@ struct ProgramEnd {
     double seconds = 0;     // of wall clock
     double cpu_seconds = 0; // of all its threads
     int exit_code = 0;      // -1: a signal ended it
-    std::string said;       // the last line it wrote to standard error
+    std::string said;       // its last message, without lines of a scene below it
     bool stopped = false;   // `stop` returned true
     bool too_long = false;  // it ran longer than its limit
 };

@@ -22,6 +22,8 @@ TEST(RunProgram, SaysHowAProgramEnded) {
     EXPECT_FALSE(end->stopped);
     EXPECT_FALSE(end->too_long);
     EXPECT_EQ(shell("kill -TERM $$")->exit_code, -1);
+    EXPECT_EQ(shell("echo 'a.pov:1:5: found b' >&2; echo '    b' >&2; echo '    ^' >&2")->said,
+              "a.pov:1:5: found b");
 }
 
 TEST(RunProgram, EndsWhatIsToStop) {
