@@ -169,6 +169,19 @@ TEST_F(CommandLine, AFragmentVariantIsAKernelAsAnyOther) {
     EXPECT_EQ(result.output, asked("").output);
 }
 
+/// Its users cannot call the library, and llvmpipe has no vectors of 512 bits for fragment kernels.
+TEST_F(CommandLine, GivesNoAdviceForHosts) {
+    for (const char* arguments :
+         {"info box --log-level info", "convert box b.ovc --log-level info",
+          "render box --size 8x8 -o a.png --kernel fragment",
+          "render box --size 8x8 -o a.png --backend single-texture",
+          "bench box --size 8x8 --repeats 1 --only certified-fragment,thesis-two-level"}) {
+        const test::CommandResult result = overcast(arguments);
+        EXPECT_EQ(result.exit_code, 0) << arguments;
+        EXPECT_THAT(result.output, testing::Not(HasSubstr("prepare_process"))) << arguments;
+    }
+}
+
 TEST_F(CommandLine, NeedsNobodyWhoTakesItsMessages) {
     const std::string render = "render box --size 32x24 --progress p.json ";
     ASSERT_EQ(overcast(render + "-o a.png").exit_code, 0);

@@ -55,8 +55,9 @@ constexpr const char* kBenchExamples = R"(Examples:
       triangles and time against the distance from exact spheres, cones and tori
   overcast bench dragon.ply --json - | jq '.scenes[].measurements[] | {contender, call_seconds}'
 
---bars says of each line from where to where the median of more turns lies with a probability of
-90 %. It exits with 1 where a line fails, and judges no line whose bar lies between the two.
+--bars says of each line from where to where the median of more turns lies, from five --repeats on
+with a probability of 90 %. It exits with 1 where a line fails, and judges no line whose bar lies
+between the two.
 
 All contenders answer the same rays with the same number of threads, and are in memory at once.
 Interrupted with Ctrl-C, it prints what it has and exits with 2.)";

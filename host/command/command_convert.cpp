@@ -3,6 +3,7 @@
 #include "host/arguments/arguments.h"
 #include "host/arguments/backend_arguments.h"
 #include "host/arguments/log_arguments.h"
+#include "host/backend/device_opening.h"
 #include "host/backend/streamed_levels.h"
 #include "host/command/command.h"
 #include "host/output/output.h"
@@ -228,6 +229,8 @@ public:
         if (const Result<Done> fine = check_host_memory(); !fine)
             return fine.error();
         const LogSink log = standard_error_log(*level);
+        if (extension_of(output_) == ".ovc")
+            prepare_process(*backend_options);
         const Result<Done> done = convert(*backend_options, log);
         if (!done)
             return done.error();

@@ -56,6 +56,7 @@ public:
         const Result<const ovc_api*> api = load_plugin();
         if (!api)
             return api.error();
+        prepare_process(OVC_KERNEL_AUTO); // names are those that render and trace know
         const Result<std::vector<ovc_device_info>> infos = list_devices(*api);
         if (!infos)
             return infos.error();

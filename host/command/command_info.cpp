@@ -5,6 +5,7 @@
 #include "host/arguments/backend_arguments.h"
 #include "host/arguments/log_arguments.h"
 #include "host/arguments/memory_size.h"
+#include "host/backend/device_opening.h"
 #include "host/backend/streamed_levels.h"
 #include "host/command/command.h"
 #include "host/scene/scene_in_store.h"
@@ -266,6 +267,7 @@ public:
         if (!options)
             return options.error();
         const LogSink log = standard_error_log(*level);
+        prepare_process(*options);
         if (options->host_bytes > 0 && !source_.is_one_scene_file())
             return tell_streamed(*options, log);
         source_.host_bytes = options->host_bytes;
