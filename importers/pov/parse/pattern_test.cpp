@@ -226,6 +226,18 @@ TEST(PovFinish, AlbedosAreOfAllDirectionsTogether) {
     EXPECT_NEAR(finish.specular, 0.3 * 1.5259, 1e-3);
 }
 
+TEST(PovFinish, OneReflectionIsMultipliedByFresnelsShare) {
+    const auto head_on = [](const std::string& reflection) {
+        const Scene scene = textured_box("finish { reflection { " + reflection + " } }");
+        const Finish& finish = *box_material(scene).finish;
+        EXPECT_EQ(finish.grazing_reflection, vec3(0.5f));
+        return finish.reflection;
+    };
+    EXPECT_EQ(head_on("0.5 fresnel"), vec3(0));
+    EXPECT_EQ(head_on("0.2, 0.5 fresnel"), vec3(0.2f));
+    EXPECT_EQ(head_on("0.5 falloff 2"), vec3(0.5f));
+}
+
 TEST(PovTexture, TilesBeginWithTheSecond) {
     const Scene scene = textured_box("texture { tiles { texture { pigment { rgb x } } "
                                      "tile2 texture { pigment { rgb y } } } }");

@@ -35,7 +35,8 @@ void parse_reflection(Reader& reader, Surface& surface) {
     }
     finish.reflection = finish.grazing_reflection = parse_color(reader).rgb;
     reader.take_comma();
-    if (starts_number(reader, reader.peek()))
+    const bool is_range = starts_number(reader, reader.peek());
+    if (is_range)
         finish.grazing_reflection = parse_color(reader).rgb;
     finish.reflection_falloff = 1;
     while (!reader.take('}')) {
@@ -52,6 +53,8 @@ void parse_reflection(Reader& reader, Surface& surface) {
         } else
             reader.fail_here("a part of reflection { }");
     }
+    if (finish.fresnel && !is_range) // one value is what Fresnel's share is multiplied by
+        finish.reflection = vec3(0);
 }
 
 /// Reads the block of irid.
