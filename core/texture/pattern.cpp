@@ -24,19 +24,23 @@ bool is_in_reach(const dvec3& at) {
     return is_finite(at) && max_component(glm::abs(at)) <= kFarthestPattern;
 }
 
-/// Returns the value from 0 to 1. POV-Ray wraps just above 1, so that a value of 1 stays.
+/// Returns the value, which lies between 0 and 1 unless the frequency is 0: then POV-Ray takes it
+/// without phase, as it is. Else POV-Ray wraps just above 1, so that a value of 1 stays.
 double wave_of(const Pattern& pattern, double value) {
     if (pattern.wave == Pattern::Wave::None)
         return value;
     constexpr double kWrap = 1.00001;
-    double x = std::fmod(value * pattern.frequency + pattern.phase, kWrap);
-    x = x < 0 ? x + kWrap : x;
+    double x = value;
+    if (pattern.frequency != 0) {
+        x = std::fmod(value * pattern.frequency + pattern.phase, kWrap);
+        x = x < 0 ? std::max(0.0, x + 1) : x;
+    }
     switch (pattern.wave) {
     case Pattern::Wave::Ramp:
     case Pattern::Wave::None:
         break;
     case Pattern::Wave::Triangular:
-        return x < 0.5 ? 2 * x : 2 * (1 - x);
+        return triangle_of(x);
     case Pattern::Wave::Sine:
         return 0.5 + 0.5 * std::sin(2 * std::numbers::pi * x);
     case Pattern::Wave::Scallop:

@@ -125,11 +125,6 @@ double density(const Pattern& pattern, const dvec3& at) {
     return sum;
 }
 
-double triangle_of(double x) {
-    const double part = fraction(x);
-    return part < 0.5 ? 2 * part : 2 * (1 - part);
-}
-
 /// parameters: how soft the seam is at its bottom and at its top.
 double quilted(const Pattern& pattern, const dvec3& at) {
     const dvec3 off = glm::abs(at - glm::floor(at) - 0.5);
@@ -206,9 +201,9 @@ double perlin(const Pattern& pattern, const TexturePoint& point) {
     }
 }
 
-/// Two spirals that run against each other.
+/// Two spirals that run against each other. The value goes from 0 to 2.
 double double_spiral(const Pattern& pattern, const dvec3& at) {
-    return fraction(triangle_of(spiral(pattern, at)) + triangle_of(std::hypot(at.x, at.y)));
+    return triangle_of(spiral(pattern, at)) + triangle_of(std::hypot(at.x, at.y));
 }
 
 /// Returns the value of a pattern that follows from the place alone.
@@ -234,6 +229,11 @@ double value_of_place(Kind kind, const dvec3& at) {
 }
 
 } // namespace
+
+double triangle_of(double x) {
+    const double part = fraction(x);
+    return part < 0.5 ? 2 * part : 2 * (1 - part);
+}
 
 double quilted_curve(const Pattern& pattern, double t) {
     const double s = 1 - t;

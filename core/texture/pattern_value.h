@@ -10,6 +10,9 @@ namespace ovc {
 double continuous_value(std::span<const Texture> textures, const Pattern& pattern,
                         const TexturePoint& point);
 
+/// Returns the wave that goes from 0 at whole numbers to 1 in between.
+double triangle_of(double x);
+
 /// Returns the number of the stop that a discrete pattern chooses.
 double discrete_value(const Pattern& pattern, const dvec3& at);
 

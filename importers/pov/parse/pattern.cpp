@@ -216,9 +216,10 @@ void PatternParts::parse_arguments(const Token& token) {
         pattern_.parameters = {-1, 1, 0, 2, 0, 0};
     else if (token.is("facets"))
         parse_facets();
-    else if (token.is("quilted"))
+    else if (token.is("quilted")) {
         pattern_.parameters = {1, 1};
-    else if (token.is("ripples") || token.is("waves"))
+        pattern_.frequency = 0; // as in povray: a phase counts from `frequency` on
+    } else if (token.is("ripples") || token.is("waves"))
         pattern_.parameters[0] = reader_.wave_sources;
     else if (token.is("function"))
         take_function(token, parse_function(reader_));
