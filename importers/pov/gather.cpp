@@ -163,6 +163,7 @@ void Gatherer::inherit(const Object& object, Inherited& from) {
     }
     from.uv_mapping = from.uv_mapping || object.uv_mapping;
     from.inverse = from.inverse != object.inverse;
+    from.turned = from.turned || object.turned;
     // A short scene with groups of groups can place more objects than memory holds.
     if (++visited_ > look_.max_triangles / kTrianglesAnObject)
         throw ParseError(object.place,
@@ -228,7 +229,7 @@ void Gatherer::add_solid(const Object& object, Inherited from) {
     solid.seen_by = from.seen_by & object.seen_by;
     solid.lit_by = from.lit_by;
     from.in_solid = glm::inverse(object.placed);
-    from.inverse = false; // the inverse of a whole solid has the same surface
+    from.inverse = from.turned = false; // the inverse of a whole solid has the same surface
     if (gather_node(object, from, solid) && is_wanted(solid.seen_by))
         solids.push_back(std::move(solid));
 }
@@ -248,10 +249,12 @@ bool Gatherer::gather_node(const Object& object, Inherited from, Solid& solid) {
         node.operand = uint32_t(solid.leaves.size());
         solid.leaves.push_back(leaf_of(object, from));
     } else {
-        node.kind = kind_of(object, from.inverse);
+        node.kind = kind_of(object, from.inverse, from.turned);
         for (const ObjectPtr& child : object.children) {
             Inherited down = from;
-            down.inverse = from.inverse != (object.kind == "difference" && !node.children.empty());
+            const bool is_taken_away = object.kind == "difference" && !node.children.empty();
+            down.inverse = from.inverse != is_taken_away;
+            down.turned = from.turned || is_taken_away;
             if (gather_node(*child, down, solid))
                 node.children.push_back(uint32_t(solid.nodes.size() - 1));
         }
@@ -264,7 +267,7 @@ bool Gatherer::gather_node(const Object& object, Inherited from, Solid& solid) {
     csg::Node clip{csg::Kind::Clip, 0, {uint32_t(solid.nodes.size() - 1)}};
     for (const ObjectPtr& other : object.clips) {
         Inherited down = outside;
-        down.inverse = false;
+        down.inverse = down.turned = false;
         if (gather_node(*other, down, solid))
             clip.children.push_back(uint32_t(solid.nodes.size() - 1));
     }

@@ -33,6 +33,7 @@ struct Inherited {
     bool uv_mapping = false;
     bool inverse = false;
     bool hollow = false;
+    bool turned = false; // whether `inverse` has ever changed on the way
     bool double_illuminate = false;
 };
 

@@ -89,6 +89,7 @@ struct Object {
     bool uv_mapping = false;       // of its own texture and those of its parts
     bool global_lights = false;    // of a light_group: lights of no group shine on it too
     bool inverse = false;
+    bool turned = false;            // whether it has been inverted, be it twice
     bool hollow = false;            // media may fill it
     bool double_illuminate = false; // light that arrives at a far side lights the near one, too
     bool open = false;

@@ -327,15 +327,22 @@ dvec3 normal_at(const CutLeaf& leaf, uint32_t triangle, const dvec3& p) {
 
 } // namespace
 
-bool is_solid(const Object& object) {
-    return std::holds_alternative<EndlessShape>(object.shape) || object.kind == "difference" ||
-           object.kind == "intersection" || object.kind == "merge" || !object.clips.empty();
+/// Returns whether the union has more than one part.
+static bool has_several_parts(const Object& object) {
+    return object.children.size() > 1 || (object.kind == "union" && object.children.size() == 1 &&
+                                          has_several_parts(*object.children[0]));
 }
 
-csg::Kind kind_of(const Object& object, bool inverse) {
+bool is_solid(const Object& object) {
+    return std::holds_alternative<EndlessShape>(object.shape) || object.kind == "difference" ||
+           object.kind == "intersection" || object.kind == "merge" || !object.clips.empty() ||
+           (object.kind == "union" && object.turned && has_several_parts(object));
+}
+
+csg::Kind kind_of(const Object& object, bool inverse, bool turned) {
     const bool all = object.kind == "difference" || object.kind == "intersection";
     if (all == inverse)
-        return object.kind == "merge" || inverse ? csg::Kind::Merge : csg::Kind::Union;
+        return object.kind == "merge" || turned ? csg::Kind::Merge : csg::Kind::Union;
     return csg::Kind::Intersection;
 }
 

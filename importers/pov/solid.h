@@ -37,8 +37,9 @@ struct Solid {
 /// Returns whether the object's parts bound each other, so that it must be evaluated as a whole.
 bool is_solid(const Object& object);
 /// Returns the kind of the tree's node for an object that has children. `inverse` asks for the
-/// complement, by De Morgan's rules.
-csg::Kind kind_of(const Object& object, bool inverse);
+/// complement, by De Morgan's rules. turned: the object has been inverted, be it twice; POV-Ray
+/// makes a merge of a union then.
+csg::Kind kind_of(const Object& object, bool inverse, bool turned);
 
 /// The triangles of one material, in the solid's space.
 struct SolidPart {

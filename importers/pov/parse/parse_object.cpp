@@ -193,9 +193,10 @@ bool parse_switch(Reader& reader, Object& object) {
         object.double_illuminate = parse_flag(reader);
     else if (reader.take("uv_mapping"))
         object.uv_mapping = parse_flag(reader);
-    else if (reader.take("inverse"))
+    else if (reader.take("inverse")) {
         object.inverse = !object.inverse;
-    else if (reader.take("open"))
+        object.turned = true;
+    } else if (reader.take("open"))
         object.open = parse_flag(reader);
     else if (reader.take("hollow"))
         object.hollow = parse_flag(reader);
