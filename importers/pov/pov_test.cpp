@@ -147,6 +147,32 @@ TEST(PovExpression, PatternsAndPigmentsAreFunctions) {
     EXPECT_LT(glm::length(turbulence - dvec3(-0.206909763, -0.414561417, -0.09054023)), 1e-6);
 }
 
+/// povray 3.7.0.10 prints these values.
+TEST(PovExpression, FunctionsLookAtPictures) {
+    const TestFolder folder;
+    folder.write("a.png", png_of(2, 1, {255, 0, 0, 255, 0, 0, 255, 51}));
+    const auto red_of = [&](const std::string& function, const std::string& call) {
+        const Result<Scene> scene = load(folder.write(
+            "a.pov", "#version 3.7; global_settings { assumed_gamma 1 }\n#declare F = function { " +
+                         function + " }; #declare V = " + call +
+                         "; sphere { 0, 1 pigment { rgb <V, 0, 0> } }"));
+        EXPECT_TRUE(scene) << (scene ? "" : scene.error().message);
+        return scene ? scene->materials.at(0).color.x : -1;
+    };
+    const auto pattern = [](const std::string& words) {
+        return "pattern { image_pattern { png \"a.png\" " + words + " } }";
+    };
+    EXPECT_NEAR(red_of(pattern(""), "F(0.2, 0.5, 0)"), 0.297, 1e-6);
+    EXPECT_NEAR(red_of(pattern(""), "F(-0.3, 0.5, 0)"), 0.114, 1e-6);
+    EXPECT_NEAR(red_of(pattern("once"), "F(-0.3, 0.5, 0)"), 0, 1e-6);
+    EXPECT_NEAR(red_of(pattern("interpolate 2"), "F(0.45, 0.5, 0)"), 0.2238, 1e-4);
+    EXPECT_NEAR(red_of(pattern("interpolate 2 once"), "F(0.2, 0.5, 0)"), 0.297, 1e-4);
+    EXPECT_NEAR(red_of(pattern("use_alpha"), "F(0.7, 0.5, 0)"), 0.8, 1e-6);
+    const std::string map = "pigment { image_map { png \"a.png\" interpolate 2 } }";
+    EXPECT_NEAR(red_of(map, "F(0.45, 0.5, 0).red"), 0.6, 1e-4);
+    EXPECT_NEAR(red_of(map, "F(0.7, 0.5, 0).transmit"), 0.72, 1e-4);
+}
+
 /// povray 3.7.0.10 prints these values. Ours may differ on julia_fractal because of facets.
 TEST(PovExpression, TraceMeetsSurfacesWherePovRayDoes) {
     const std::string box =

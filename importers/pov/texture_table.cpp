@@ -4,6 +4,7 @@
 #include "core/texture/pattern.h"
 #include "importers/file/picture_path.h"
 #include "importers/pov/material_table.h"
+#include "importers/pov/pictures/map_picture.h"
 #include "importers/pov/values/transform.h"
 
 #include <algorithm>
@@ -38,7 +39,26 @@ static size_t key_of(const ovc::Texture& texture) {
     return key;
 }
 
+/// Makes an image of the picture, which it looks at.
+static void show(const ImageMap& map, ovc::Texture& texture) {
+    texture.kind = TextureKind::Image;
+    texture.image = map.image;
+    texture.image->lookup = map.picture.get();
+}
+
+/// Names the picture of an image in the scene, in the place of looking at it.
+static void name_picture(Scene& scene, ImageTexture& image) {
+    // Nothing else is looked at while a scene is read.
+    const auto* picture = static_cast<const MapPicture*>(image.lookup);
+    image.lookup = nullptr;
+    image.picture = add_picture(scene, picture->path, picture->asked_for_at);
+    if (!picture->contents.empty())
+        scene.pictures[image.picture].contents = picture->contents;
+}
+
 uint32_t TextureTable::add(ovc::Texture texture, bool is_mix) {
+    if (for_ == For::Renderers && texture.image && texture.image->lookup)
+        name_picture(scene_, *texture.image);
     const size_t key = key_of(texture);
     const auto [first, last] = by_key_[is_mix].equal_range(key);
     for (auto known = first; known != last; ++known)
@@ -66,14 +86,6 @@ static Formula brightness_of(uint32_t texture) {
              {Kind::Argument, 2},
              {Kind::Color, texture, kGray}},
             {4}};
-}
-
-void TextureTable::show(const ImageMap& map, ovc::Texture& texture) {
-    texture.kind = TextureKind::Image;
-    texture.image = map.image;
-    texture.image->picture = add_picture(scene_, map.path, map.asked_for_at);
-    if (map.contents)
-        scene_.pictures[texture.image->picture].contents = *map.contents;
 }
 
 Pattern TextureTable::pattern_of(const PatternMap& map) {
@@ -166,9 +178,12 @@ PlacedTexture TextureTable::of_materials(const Pigment& mix, std::span<const uin
 
 ProgramPtr color_program(const Pigment& pigment) {
     Scene scratch;
-    const uint32_t number = TextureTable(scratch).number(pigment);
+    const uint32_t number = TextureTable(scratch, TextureTable::For::Functions).number(pigment);
     scratch.textures.push_back(scratch.textures[number]); // the pigment is the last
-    return std::make_shared<const FormulaProgram>(FormulaProgram{{}, std::move(scratch.textures)});
+    FormulaProgram program{{}, std::move(scratch.textures), {}};
+    if (pigment.pattern)
+        program.owners.push_back(pigment.pattern);
+    return std::make_shared<const FormulaProgram>(std::move(program));
 }
 
 bool lets_light_through(const Pigment& pigment) {

@@ -16,7 +16,11 @@ struct Look;
 /// Adds textures to a scene. Equal ones are added once. Patterns must outlive it.
 class TextureTable {
 public:
-    explicit TextureTable(Scene& scene) : scene_(scene) {}
+    /// Who evaluates the textures: whoever renders opens their pictures, but the functions of the
+    /// scene look at them while the scene is read, as long as their patterns live.
+    enum class For { Renderers, Functions };
+
+    explicit TextureTable(Scene& scene, For whom = For::Renderers) : scene_(scene), for_(whom) {}
 
     /// Returns the pattern's colors as they lie in the world. placed: brings the pattern there.
     PlacedTexture of_pigments(const PatternMap& map, const dmat4& placed);
@@ -44,11 +48,11 @@ public:
 
 private:
     uint32_t number(const PatternMap& map);
-    void show(const ImageMap& map, ovc::Texture& texture);
     Pattern pattern_of(const PatternMap& map);
     uint32_t add(ovc::Texture texture, bool is_mix);
 
     Scene& scene_;
+    For for_;
     bool has_uv_ = false;
     std::vector<TextureStep> to_uv_;
     std::vector<bool> on_uv_;                                  // of each texture

@@ -5,11 +5,13 @@
 #include "importers/png.h"
 #include "importers/pov/parse/texture.h"
 #include "importers/pov/pictures/holes.h"
+#include "importers/pov/pictures/map_picture.h"
 #include "importers/pov/pictures/picture.h"
 #include "importers/pov/words/block.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 
@@ -78,6 +80,7 @@ struct MapWords {
     std::optional<double> bump_size;
     GivenGamma gamma;
     bool use_index = false; // the value is the number of a color in the table, not its brightness
+    bool use_alpha = false; // the value is how transparent the picture is
 
     /// Returns the projection of the type; nothing for one that POV-Ray does not have.
     std::optional<ImageTexture::Projection> projection() const {
@@ -97,8 +100,9 @@ struct MapWords {
 };
 
 /// Reads the words up to the end of the block, or up to the textures of a material_map.
-MapWords parse_map_words(Reader& reader, bool of_materials = false) {
+MapWords parse_map_words(Reader& reader, std::string_view block) {
     MapWords words;
+    const bool of_materials = block == "material_map";
     const auto is_texture = [&] {
         const Token token = reader.peek();
         return of_materials && (token.is("texture") || named<Texture>(reader, token));
@@ -121,7 +125,9 @@ MapWords parse_map_words(Reader& reader, bool of_materials = false) {
         else if (reader.take("use_index"))
             words.use_index = true;
         else if (reader.take("use_color") || reader.take("use_colour"))
-            words.use_index = false;
+            words.use_index = words.use_alpha = false;
+        else if (block == "image_pattern" && reader.take("use_alpha"))
+            words.use_alpha = true;
         else if (const Token word = reader.peek(); reader.take("premultiplied")) {
             if (parse_flag(reader))
                 reader.omit("premultiplied", word.place, "premultiplied of a picture is left out");
@@ -131,9 +137,18 @@ MapWords parse_map_words(Reader& reader, bool of_materials = false) {
     return words;
 }
 
-/// Returns the picture as a texture of the scene. Where holes are cut, it is opaque.
-PatternPtr shown_by_textures(const Reader& reader, const Place& start, const std::string& path,
-                             const MapWords& words, const Pigment& pigment) {
+ImageMap image_map_of(const Place& start, const std::filesystem::path& path,
+                      const ImageTexture& image) {
+    return {std::make_shared<const MapPicture>(
+                std::filesystem::absolute(path).lexically_normal().string(),
+                fmt::format("{}:{}:{}", start.file->name, start.line, start.column), image.gamma),
+            image};
+}
+
+/// Returns the picture as a texture of the scene, which lets light through where it says so.
+PatternPtr shown_by_textures(const Reader& reader, const Place& start,
+                             const std::filesystem::path& path, const MapWords& words,
+                             const Pigment& pigment) {
     ImageTexture image;
     image.projection = *words.projection();
     image.gamma = gamma_of(reader, words.gamma);
@@ -146,10 +161,7 @@ PatternPtr shown_by_textures(const Reader& reader, const Place& start, const std
     image.transmit_all = words.transparency.all.transmit;
     image.otherwise = pigment.holes ? pigment.holes->color : pigment.color;
     PatternMap map;
-    map.image_map = ImageMap{std::filesystem::absolute(path).lexically_normal().string(),
-                             fmt::format("{}:{}:{}", start.file->name, start.line, start.column),
-                             image,
-                             {}};
+    map.image_map = image_map_of(start, path, image);
     return std::make_shared<const PatternMap>(std::move(map));
 }
 
@@ -181,18 +193,25 @@ NamedPicture take_picture(Reader& reader, const std::string& block) {
     return named;
 }
 
-/// Returns a texture of the picture's codes.
+/// Returns a texture of the picture's codes, or of how transparent it is. As povray takes it for
+/// that, a picture without opacity is as transparent as red, and with a table of colors opaque.
 ImageMap image_of_codes(const NamedPicture& named, const MapWords& words) {
     ImageTexture image;
     image.projection = *words.projection();
     image.gamma = words.gamma.value_or(1);
     image.filter = words.smooth ? TexelFilter::Smooth : TexelFilter::Nearest;
     image.beyond_s = image.beyond_t = words.transparency.once ? Beyond::Nothing : Beyond::Repeat;
-    const Place& start = named.start;
-    return {std::filesystem::absolute(named.path).lexically_normal().string(),
-            fmt::format("{}:{}:{}", start.file->name, start.line, start.column),
-            image,
-            {}};
+    if (words.use_alpha) {
+        const bool has_opacity =
+            std::any_of(named.picture->pixels.begin(), named.picture->pixels.end(),
+                        [](const auto& pixel) { return pixel[3] < 65535; });
+        image.channel = has_opacity || !named.picture->indices.empty()
+                            ? ImageTexture::Channel::Opacity
+                            : ImageTexture::Channel::Red;
+        if (image.channel == ImageTexture::Channel::Opacity)
+            image.scale = vec3(-1), image.offset = vec3(1);
+    }
+    return image_map_of(named.start, named.path, image);
 }
 
 /// Returns the note that a block is not drawn, and why.
@@ -221,12 +240,15 @@ Result<ImageMap> image_of_indices(const NamedPicture& named, const MapWords& wor
         write_png({picture.width, picture.height, 8, samples}, "Overcast");
     if (!png)
         return png.error();
-    ImageMap map = image_of_codes(named, words);
-    map.image.filter = TexelFilter::Nearest;
-    map.image.gamma = 1;
-    map.contents = std::make_shared<const std::vector<uint8_t>>(png->begin(), png->end());
-    map.path += fmt::format(", choosing from {}", count);
-    return map;
+    const ImageMap codes = image_of_codes(named, words);
+    ImageTexture image = codes.image;
+    image.filter = TexelFilter::Nearest;
+    image.gamma = 1;
+    return ImageMap{std::make_shared<const MapPicture>(
+                        codes.picture->path + fmt::format(", choosing from {}", count),
+                        codes.picture->asked_for_at, image.gamma,
+                        std::vector<uint8_t>(png->begin(), png->end())),
+                    image};
 }
 
 /// Returns the picture of a material_map of `count` textures as MaterialValues does.
@@ -257,7 +279,7 @@ double parse_gamma(Reader& reader) {
 
 ValueMap parse_value_map(Reader& reader, const Token& word) {
     const NamedPicture named = take_picture(reader, word.name->text);
-    const MapWords words = parse_map_words(reader);
+    const MapWords words = parse_map_words(reader, word.name->text);
     ValueMap map{.bump_size = words.bump_size};
     const bool flat_only = word.is("bump_map");
     if (!named.picture)
@@ -267,7 +289,8 @@ ValueMap parse_value_map(Reader& reader, const Token& word) {
                                 fmt::format("map_type {} is not known", words.type));
     else {
         map.image = image_of_codes(named, words);
-        if (words.use_index && !named.picture->indices.empty())
+        // povray takes no index for the value of an image_pattern, though it reads the word.
+        if (flat_only && words.use_index && !named.picture->indices.empty())
             if (Result<ImageMap> image = image_of_indices(named, words, 256); image)
                 map.image = std::move(*image);
         if (flat_only)
@@ -278,7 +301,7 @@ ValueMap parse_value_map(Reader& reader, const Token& word) {
 
 MaterialValues parse_material_picture(Reader& reader, const Token& word) {
     const auto named = std::make_shared<const NamedPicture>(take_picture(reader, word.name->text));
-    const MapWords words = parse_map_words(reader, /* of_materials= */ true);
+    const MapWords words = parse_map_words(reader, "material_map");
     return [named, words, word](Reader& again, size_t count) {
         return values_of_materials(again, word, *named, words, count);
     };
@@ -294,7 +317,7 @@ void parse_image_map(Reader& reader, const Token& word, Pigment& pigment) {
     pigment.placed = dmat4(1);
     const NamedPicture named = take_picture(reader, "image_map");
     const Place& start = named.start;
-    const MapWords words = parse_map_words(reader);
+    const MapWords words = parse_map_words(reader, "image_map");
     if (!named.picture) {
         note("image_map " + named.name, start,
              fmt::format("{}: the image_map is drawn by a middle grey",

@@ -215,6 +215,31 @@ TEST(PovImagePattern, IsTheBrightnessOfCodes) {
     EXPECT_NEAR(color.y, gray, 1e-5);
 }
 
+TEST(PovImagePattern, TakesThePictureThatItsFunctionNames) {
+    const TestFolder folder;
+    folder.write("a.png", png_of(1, 1, {255, 0, 0, 255}));
+    folder.write("b.png", png_of(1, 1, {0, 255, 0, 255}));
+    const std::string a = "pigment { image_map { png \"a.png\" } }";
+    const std::string b = "pigment { image_map { png \"b.png\" } }";
+    const Result<Scene> scene = load(folder.write(
+        "a.pov", "#version 3.7;\n#declare G = function { " + b + " };\nsphere { 0, 1 " + a +
+                     " }\nsphere { 3, 1 pigment { pigment_pattern { " + b.substr(10) +
+                     " } }\nsphere { 6, 1 pigment { function { G(x, y, z).green } } }"));
+    ASSERT_TRUE(scene) << scene.error().message;
+    ASSERT_EQ(scene->pictures.size(), 2u);
+    ASSERT_EQ(scene->materials.size(), 3u);
+    for (size_t m = 0; m < 3; ++m) {
+        const Texture& texture = scene->textures[scene->materials[m].texture.value().texture];
+        uint32_t number = scene->materials[m].texture->texture;
+        for (const FormulaStep& step : texture.pattern.formula.steps)
+            number = step.kind == FormulaStep::Kind::Color ? step.index : number;
+        const std::optional<ImageTexture>& image = scene->textures[number].image;
+        ASSERT_TRUE(image);
+        EXPECT_EQ(image->picture, m == 0 ? 0u : 1u);
+        EXPECT_EQ(image->lookup, nullptr) << "whoever renders opens it";
+    }
+}
+
 TEST(PovBumpMap, ItsSizeComesFromTheBlockOrFromBehindIt) {
     const auto bump_of = [](const std::string& normal) {
         return read_beside_picture("sphere { 0, 1 normal { " + normal + " } }").material().bump;

@@ -27,6 +27,8 @@ const ProgramBuilder::Copied& ProgramBuilder::copied(const ProgramPtr& other) {
         program_.textures.push_back(std::move(texture));
         return uint32_t(program_.textures.size() - 1);
     });
+    if (!other->owners.empty())
+        program_.owners.push_back(other);
     Formula added = other->formula;
     move_textures(added, places);
     Formula& all = program_.formula;

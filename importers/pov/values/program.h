@@ -11,8 +11,9 @@
 namespace ovc::pov {
 
 struct FormulaProgram {
-    Formula formula;                    // calls textures[i] as texture i
-    std::vector<ovc::Texture> textures; // made of earlier ones
+    Formula formula;                                 // calls textures[i] as texture i
+    std::vector<ovc::Texture> textures;              // made of earlier ones
+    std::vector<std::shared_ptr<const void>> owners; // of the pictures that the textures look at
 
     double operator()(std::span<const double> arguments) const {
         return evaluate(textures, formula, arguments);

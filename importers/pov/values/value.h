@@ -129,12 +129,11 @@ struct MapStop {
     const Color& average() const { return texture ? texture->pigment.color : pigment.color; }
 };
 
-/// The picture of an image_map, which the scene's textures show.
+class MapPicture;
+/// The picture of an image_map, which the scene's textures show. The copies of a pigment share it.
 struct ImageMap {
-    std::string path;
-    std::string asked_for_at; // "a.pov:12:3"
+    std::shared_ptr<const MapPicture> picture;
     ImageTexture image;
-    std::shared_ptr<const std::vector<uint8_t>> contents; // instead of the file's; null: none
 };
 
 struct PatternMap {
