@@ -180,20 +180,23 @@ Cover Gatherer::cover_of(const Object& object, const Inherited& from, bool in_so
     const bool on_corners =
         object.kind == "mesh" || object.kind == "mesh2" || (shape && shape->corners_have_uv);
     const bool has_uv = !in_solid && on_corners;
-    const bool has_holes = pigment.holes && (!on_uv || has_uv);
-    const Color& color = has_holes ? pigment.holes->color : pigment.color;
+    // Of a mix the first texture stands here.
+    const bool has_holes = pigment.holes && !texture.mix.pattern && (!on_uv || has_uv);
+    const Texture filled = has_holes ? without_holes(texture, on_uv) : Texture();
+    const Texture& look = has_holes ? filled : texture;
+    const Color& color = look.pigment.color;
     materials_.set_has_uv(has_uv && !has_holes);
     const bool in_formulas = on_uv && !on_corners;
     materials_.set_to_uv(in_formulas ? to_uv_of(object, from.placed) : std::vector<TextureStep>());
     const uint32_t material =
         on_uv && !pigment.uv_mapping
-            ? materials_.number(on_texture_coordinates(texture), color, from.texture_placed,
+            ? materials_.number(on_texture_coordinates(look), color, from.texture_placed,
                                 from.interior, from.inside)
-            : materials_.number(texture, color, from.texture_placed, from.interior, from.inside);
+            : materials_.number(look, color, from.texture_placed, from.interior, from.inside);
     Cover cover{material};
     cover.curved = is_curved(object);
     cover.uv = materials_.is_on_uv(material);
-    if (on_uv && (pigment.pattern || texture.mix.pattern) && !materials_.maps_uv() && look_.tell)
+    if (on_uv && (look.pigment.pattern || look.mix.pattern) && !materials_.maps_uv() && look_.tell)
         look_.tell({"uv_mapping of a shape", object.place,
                     "uv_mapping of lathes, patches, parametrics and meshes is left out in "
                     "solids"});
@@ -202,23 +205,43 @@ Cover Gatherer::cover_of(const Object& object, const Inherited& from, bool in_so
     if (has_holes)
         cover.holes = holes.number(
             pigment, on_uv ? pigment.placed : from.texture_placed * pigment.placed, on_uv);
-    if (pigment.holes)
-        tell_of_holes(object, scene_.materials[cover.material], has_holes);
+    if (has_holes)
+        tell_of_holes(object, scene_.materials[cover.material], on_uv && !pigment.holes->one_color);
     return cover;
 }
 
+Texture Gatherer::without_holes(const Texture& texture, bool on_uv) {
+    Texture filled = texture;
+    const Holes& cut = *texture.pigment.holes;
+    filled.pigment.color = cut.color;
+    if (cut.one_color || on_uv) {
+        filled.pigment.pattern.reset();
+        return filled;
+    }
+    PatternPtr& known = pictures_without_holes_[texture.pigment.pattern.get()];
+    if (!known) {
+        auto map = std::make_shared<PatternMap>(*texture.pigment.pattern);
+        ImageTexture& image = map->image_map->image;
+        image.is_transparent = false;
+        image.otherwise = cut.color;
+        if (image.beyond_s == Beyond::Nothing)
+            image.beyond_s = image.beyond_t = Beyond::Clamp;
+        known = std::move(map);
+    }
+    filled.pigment.pattern = known;
+    return filled;
+}
+
 void Gatherer::tell_of_holes(const Object& object, const ovc::Material& material,
-                             bool has_holes) const {
+                             bool has_lost_picture) const {
     const auto tell = [&](const char* kind, const char* sentence) {
         if (look_.tell)
             look_.tell({kind, object.place, sentence});
     };
-    if (!has_holes)
-        tell("uv_mapping", "an image_map with uv_mapping has holes on meshes alone, outside of "
-                           "solids; here its average lets light through");
+    if (has_lost_picture)
+        tell("image_map", "an image_map with holes on texture coordinates has its average color");
     const Finish& finish = *material.finish;
-    if (has_holes &&
-        (finish.specular > 0 || finish.phong > 0 || material.mirror > 0 || material.ior != 1))
+    if (finish.specular > 0 || finish.phong > 0 || material.mirror > 0 || material.ior != 1)
         tell("holes", "the holes of an image_map neither shine nor bend light");
 }
 

@@ -6,6 +6,7 @@
 #include "importers/pov/material_table.h"
 #include "importers/pov/solid.h"
 
+#include <unordered_map>
 #include <vector>
 
 namespace ovc::pov {
@@ -32,8 +33,8 @@ struct Inherited {
     LitBy lit_by;
     bool uv_mapping = false;
     bool inverse = false;
-    bool hollow = false;
     bool turned = false; // whether `inverse` has ever changed on the way
+    bool hollow = false;
     bool double_illuminate = false;
 };
 
@@ -57,7 +58,12 @@ private:
 
     Cover cover_of(const Object& object, const Inherited& from, bool in_solid = false);
 
-    void tell_of_holes(const Object& object, const ovc::Material& material, bool has_holes) const;
+    void tell_of_holes(const Object& object, const ovc::Material& material,
+                       bool has_lost_picture) const;
+
+    /// Returns a texture whose pigment has holes as what is there looks: on texture coordinates it
+    /// has one color.
+    Texture without_holes(const Texture& texture, bool on_uv);
 
     void add_solid(const Object& object, Inherited from);
 
@@ -70,6 +76,7 @@ private:
     const Look& look_;
     Scene& scene_;
     MaterialTable materials_;
+    std::unordered_map<const PatternMap*, PatternPtr> pictures_without_holes_;
     uint64_t visited_ = 0;
     uint32_t light_groups_ = 0; // so far
 };

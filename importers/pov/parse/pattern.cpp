@@ -523,6 +523,7 @@ void PatternParts::finish_picture() {
     }
     if (steps == pigment_.pattern->pattern.steps)
         return;
+    pigment_.holes.reset(); // which do not move with it
     auto moved = std::make_shared<PatternMap>(*pigment_.pattern);
     moved->pattern.steps = std::move(steps);
     pigment_.pattern = std::move(moved);

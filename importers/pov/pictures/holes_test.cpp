@@ -20,11 +20,12 @@ struct Read {
     std::vector<std::string> warnings;
 };
 
-/// Reads the text, in which PNG and TABLE stand for the names of pictures.
+/// Reads the text, in which PNG, TABLE and OPAQUE stand for the names of pictures.
 Read read(std::string text) {
     const TestFolder folder;
-    for (const auto& [word, bytes] :
-         {std::pair<std::string, std::string>("PNG", opaque_and_hole()), {"TABLE", table()}})
+    for (const auto& [word, bytes] : {std::pair<std::string, std::string>("PNG", opaque_and_hole()),
+                                      {"TABLE", table()},
+                                      {"OPAQUE", png_of(1, 1, {9, 9, 9, 255})}})
         for (size_t at; (at = text.find(word)) != text.npos;)
             text.replace(at, word.size(),
                          '"' + folder.write(word.substr(0, 2), bytes).string() + '"');
@@ -164,15 +165,40 @@ TEST(PovHoles, LieOnTheTextureCoordinatesOfMeshes) {
 }
 
 TEST(PovHoles, WhatIsNotEvaluatedIsSaid) {
-    const Read ball = read("sphere { 0, 1 pigment { uv_mapping image_map { png PNG } } }");
-    EXPECT_EQ(ball.scene.meshes[0].cutout, kNone);
-    EXPECT_NEAR(ball.scene.materials[0].transmission, 0.5, 1e-6);
-    ASSERT_EQ(ball.warnings.size(), 1u);
-    EXPECT_NE(ball.warnings[0].find("with uv_mapping has holes on meshes alone"),
-              std::string::npos);
     const Read shiny = read("box { 0, 1 pigment { image_map { png PNG } } finish { phong 1 } }");
     ASSERT_EQ(shiny.warnings.size(), 1u);
     EXPECT_NE(shiny.warnings[0].find("neither shine nor bend light"), std::string::npos);
+}
+
+/// Returns the picture that the mesh's material shows, directly or by a stop of its texture.
+ImageTexture picture_of(const Scene& scene, uint32_t material) {
+    const Texture& texture =
+        scene.textures.at(scene.materials.at(material).texture.value().texture);
+    return texture.image ? *texture.image
+                         : scene.textures.at(texture.stops.at(0).texture).image.value();
+}
+
+TEST(PovHoles, AreTransparentWhereTheyAreNotCut) {
+    const std::string map = "image_map { png PNG }";
+    for (const std::string& text :
+         {"sphere { 0, 1 pigment { uv_mapping " + map + " } }",
+          "box { 0, 1 pigment { bozo pigment_map { [0 " + map + "] [1 rgb 1] } } }",
+          "box { 0, 1 texture { pigment { rgb x } } texture { pigment { " + map + " } } }",
+          std::string("box { 0, 1 pigment { image_map { png PNG once } turbulence 0.2 } }")}) {
+        const Read found = read(text);
+        EXPECT_TRUE(found.warnings.empty()) << text;
+        EXPECT_EQ(found.scene.meshes[0].cutout, kNone) << text;
+        EXPECT_TRUE(picture_of(found.scene, found.scene.meshes[0].material).is_transparent) << text;
+        EXPECT_EQ(found.scene.materials[found.scene.meshes[0].material].transmission, 1) << text;
+    }
+    const Read once = read("box { 0, 1 texture { pigment { rgb x } } texture { pigment { image_map "
+                           "{ png OPAQUE once } } } }");
+    const ImageTexture decal = picture_of(once.scene, once.scene.meshes[0].material);
+    EXPECT_TRUE(decal.is_transparent) << "around it";
+    EXPECT_EQ(decal.beyond_s, Beyond::Nothing);
+    const Read mix = read("box { 0, 1 texture { checker texture { pigment { " + map +
+                          " } } texture { pigment { rgb x } } } }");
+    EXPECT_EQ(mix.scene.meshes[0].cutout, kNone) << "only a part of it has holes";
 }
 
 TEST(PovHoles, AreFilledByALayerBelow) {

@@ -153,13 +153,11 @@ PatternPtr shown_by_textures(const Reader& reader, const Place& start,
     image.projection = *words.projection();
     image.gamma = gamma_of(reader, words.gamma);
     image.filter = words.smooth ? TexelFilter::Smooth : TexelFilter::Nearest;
-    image.beyond_s = image.beyond_t = words.transparency.once
-                                          ? (pigment.holes ? Beyond::Clamp : Beyond::Nothing)
-                                          : Beyond::Repeat;
-    image.is_transparent = !pigment.holes && pigment.color.transmit > 0;
+    image.beyond_s = image.beyond_t = words.transparency.once ? Beyond::Nothing : Beyond::Repeat;
+    image.is_transparent = pigment.color.transmit > 0 || words.transparency.once;
     image.filter_all = words.transparency.all.filter;
     image.transmit_all = words.transparency.all.transmit;
-    image.otherwise = pigment.holes ? pigment.holes->color : pigment.color;
+    image.otherwise = pigment.color;
     PatternMap map;
     map.image_map = image_map_of(start, path, image);
     return std::make_shared<const PatternMap>(std::move(map));
@@ -334,13 +332,12 @@ void parse_image_map(Reader& reader, const Token& word, Pigment& pigment) {
     if (words.type == 0)
         pigment.holes = holes;
     // A color of the picture's table that lets light through has no place in a texture, except as
-    // holes. Holes on texture coordinates are cut, and then the rest has one color.
+    // holes.
     const bool has_table = !words.transparency.of_index.empty() && !pigment.holes;
-    const bool is_shown = words.projection() && !has_table && !(pigment.uv_mapping && holes);
-    const bool is_one_color = holes && holes->one_color && words.type == 0;
-    if (is_shown && !is_one_color)
-        pigment.pattern = shown_by_textures(reader, start, named.path.string(), words, pigment);
-    else if (!is_one_color)
+    const bool is_shown = words.projection() && !has_table;
+    if (is_shown)
+        pigment.pattern = shown_by_textures(reader, start, named.path, words, pigment);
+    else
         note("image_map", word.place, "image_map is drawn by its average color");
     if (words.type == 0)
         return;
