@@ -74,8 +74,10 @@ Ray bent_ray(const ImageWindow& w, const dvec3& eye, const dvec2& at) {
         break;
     }
     case Bend::Spherical: {
-        const double rise = at.y * w.vertical_angle * pi / 180;
-        ray.dir = std::cos(rise) * (std::sin(across) * right + std::cos(across) * forward) +
+        // POV-Ray turns around `up` and `right`, which turns a mirrored picture upside down.
+        const double hand = glm::dot(glm::cross(right, up), forward) < 0 ? -1 : 1;
+        const double rise = hand * at.y * w.vertical_angle * pi / 180;
+        ray.dir = std::cos(rise) * (hand * std::sin(across) * right + std::cos(across) * forward) +
                   std::sin(rise) * up;
         break;
     }
