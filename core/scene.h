@@ -322,12 +322,14 @@ struct Lens {
     bool operator==(const Lens&) const = default;
 };
 
-/// A perspective camera. fov_degrees: the full angle of view along the image's shorter side.
+/// A perspective camera. fov_degrees: the full angle of view along the image's shorter side, or its
+/// height.
 struct Camera {
     dvec3 eye{0, 0, 1};
     dvec3 target{0};
     dvec3 up{0, 1, 0};
     double fov_degrees = 40;
+    bool fov_is_upright = false; // along the height of every picture, as in glTF
     /// If set, it decides the view instead of target, up and fov_degrees. Those then hold about the
     /// same view: the background takes its "up" from them, and a light over the shoulder its place.
     std::optional<ImageWindow> window;

@@ -148,7 +148,8 @@ void each_field(auto& io, Some<ImageWindow> auto& w) {
 }
 
 void each_field(auto& io, Some<Camera> auto& c) {
-    io(c.eye, c.target, c.up, c.fov_degrees, c.window, c.bump, c.lens, c.nearest, c.by_faces);
+    io(c.eye, c.target, c.up, c.fov_degrees, c.fov_is_upright, c.window, c.bump, c.lens, c.nearest,
+       c.by_faces);
 }
 
 void each_field(auto& io, Some<FaceMesh> auto& m) {

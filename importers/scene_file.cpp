@@ -28,7 +28,7 @@ namespace {
 constexpr std::string_view kKind = "ovc scene";
 /// Raise it with every change of scene_fields.h, and when an importer makes another scene of the
 /// same file.
-constexpr uint32_t kVersion = 23;
+constexpr uint32_t kVersion = 24;
 
 /// The checksums of the blocks (core/file/file_blocks.h) of corners, normals and texture
 /// coordinates.

@@ -32,8 +32,10 @@ static ViewAxes view_axes(const Camera& camera) {
     return {forward, right, glm::cross(right, forward)};
 }
 
-static double half_angle_tangent(double fov_degrees) {
-    return std::tan(fov_degrees * (std::numbers::pi / 360.0));
+/// Returns half the size of a pixel of a picture of this size, at a distance of 1.
+static double half_pixel(const Camera& camera, uint32_t width, uint32_t height) {
+    return std::tan(camera.fov_degrees * (std::numbers::pi / 360.0)) /
+           (camera.fov_is_upright ? height : std::min(width, height));
 }
 
 Result<Done> check_camera(const Camera& camera) {
@@ -80,7 +82,7 @@ Pinhole::Pinhole(const Camera& camera, const PicturePart& part, const Scene* sce
     right_ = axes.right;
     up_ = axes.up;
     middle_ = axes.forward;
-    const double unit = half_angle_tangent(camera.fov_degrees) / std::min(width, height);
+    const double unit = half_pixel(camera, width, height);
     to_right_ = unit * width * right_;
     to_top_ = unit * height * up_;
     bump_ = camera.bump;
@@ -200,7 +202,7 @@ Camera framing_camera(const Box& bounds, uint32_t width, uint32_t height, int up
     camera.eye = camera.target + towards_eye;
     const ViewAxes axes = view_axes(camera);
 
-    const double unit = half_angle_tangent(camera.fov_degrees) / std::min(width, height);
+    const double unit = half_pixel(camera, width, height);
     double distance = 0;
     for (int i = 0; i < 8; ++i) {
         const dvec3 sign(i & 1 ? 0.5 : -0.5, i & 2 ? 0.5 : -0.5, i & 4 ? 0.5 : -0.5);

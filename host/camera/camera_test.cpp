@@ -38,6 +38,11 @@ TEST(Pinhole, OpensTheFieldOfViewAlongTheShorterSide) {
     const dvec3 tall = Pinhole(camera, 100, 200).ray(0, 0).dir;
     EXPECT_NEAR(tall.x, -0.99, 1e-12);
     EXPECT_NEAR(tall.y, 1.99, 1e-12);
+    camera.fov_is_upright = true;
+    EXPECT_EQ(Pinhole(camera, 200, 100).ray(0, 0).dir, wide);
+    const dvec3 upright = Pinhole(camera, 100, 200).ray(0, 0).dir;
+    EXPECT_NEAR(upright.x, -0.495, 1e-12);
+    EXPECT_NEAR(upright.y, 0.995, 1e-12);
 }
 
 /// Returns POV-Ray's camera { location <1,2,3> direction 2*z right -1.6*x up <0,1,0.5> }, which is

@@ -44,8 +44,9 @@ dvec3 through(const aiMatrix4x4& place, const aiVector3D& point) {
     return {moved.x, moved.y, moved.z};
 }
 
-/// Returns the angle along the shorter side of the picture. For glTF, Assimp 5 tells the upright
-/// angle times the shape; for other formats the whole angle across, whatever its header says.
+/// Returns the angle along the shorter side of the picture; where a glTF tells no shape, the
+/// upright one, which it then has in every picture. For glTF, Assimp 5 tells the upright angle
+/// times the shape; for other formats the whole angle across, whatever its header says.
 double angle_of_view(const aiCamera& source, bool is_gltf) {
     const double shape = source.mAspect > 0 ? source.mAspect : 1;
     const double known = is_gltf ? source.mHorizontalFOV / shape : source.mHorizontalFOV;
@@ -66,6 +67,7 @@ std::optional<Camera> camera_from(const aiCamera& source, const aiNode& root, bo
     camera.target = through(*place, at + source.mLookAt);
     camera.up = through(*place, at + source.mUp) - camera.eye;
     camera.fov_degrees = angle_of_view(source, is_gltf) * 180 / std::numbers::pi;
+    camera.fov_is_upright = is_gltf && !(source.mAspect > 0);
     const bool sees = camera.fov_degrees > 0 && camera.fov_degrees < 180 && is_finite(camera.eye) &&
                       is_finite(camera.target) && camera.eye != camera.target &&
                       is_finite(camera.up);

@@ -270,6 +270,19 @@ TEST(Gltf, NodesOfOneNameMayShareALight) {
     EXPECT_TRUE(read.warnings.empty());
 }
 
+TEST(Gltf, TheAngleOfACameraIsUprightWhereItTellsNoShape) {
+    for (const bool has_shape : {false, true}) {
+        const ReadGltf read = read_gltf(gltf_of(
+            "{}",
+            std::string(",\"cameras\":[{\"type\":\"perspective\",\"perspective\":{\"yfov\":1,") +
+                (has_shape ? "\"aspectRatio\":2," : "") + "\"znear\":1}}]",
+            "{\"mesh\":0},{\"camera\":0}", "0,1"));
+        ASSERT_TRUE(read.scene.camera);
+        EXPECT_NEAR(read.scene.camera->fov_degrees, 180 / std::numbers::pi, 1e-4);
+        EXPECT_EQ(read.scene.camera->fov_is_upright, !has_shape);
+    }
+}
+
 TEST(Gltf, AMirroredMeshKeepsItsFront) {
     const ReadGltf read = read_gltf(gltf_of("{}", "",
                                             "{\"children\":[1],\"translation\":[5,0,0]},"
