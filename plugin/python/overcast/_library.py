@@ -12,6 +12,7 @@ import pathlib
 import threading
 import weakref
 from collections.abc import Callable, Iterator
+from typing import NoReturn
 
 from . import _abi
 from ._built import LIBRARY_FOLDER
@@ -92,6 +93,15 @@ def is_called_back() -> bool:
     """Tells whether the library is calling a Python function on this thread. It then refuses all
     calls because of that, but this one otherwise because of its arguments."""
     return bool(api().list_devices(None, 0, None) == Result.INVALID_STATE)
+
+
+class BoundToProcess:
+    """The base of what opens a handle, which is good for nothing in another process."""
+
+    def __reduce__(self) -> NoReturn:
+        what = type(self).__name__.lower()
+        raise TypeError(f"a {what} is neither pickled nor copied; "
+                        "open one in the process that uses it")
 
 
 class Handle:

@@ -46,9 +46,13 @@ class Limits(TypedDict, total=False):
 class Query:
     """An ovc_query, and the arrays and functions that it points to."""
 
-    def __init__(self, rays: NDArray[np.void], *, skip: Hits | ArrayLike | None = None,
-                 after: Hits | None = None, masks: ArrayLike | None = None,
-                 filter: Filter | None = None) -> None:
+    def __init__(self, rays: NDArray[np.void], limits: Limits) -> None:
+        for name in limits:
+            if name not in Limits.__annotations__:
+                raise TypeError(f"there is no argument {name!r}; "
+                                "skip, after, masks and filter say which hits count")
+        skip, after, masks, filter = (limits.get("skip"), limits.get("after"),
+                                      limits.get("masks"), limits.get("filter"))
         self.struct = _abi.ovc_query(ray_format=FORMATS.index(rays.dtype))
         self._kept: list[Any] = []
         self._raised = Raised()

@@ -11,7 +11,7 @@ import os
 
 from . import _abi
 from ._arrays import count as counted
-from ._library import Handle, api, check
+from ._library import BoundToProcess, Handle, api, check
 
 _LOG = logging.getLogger("overcast")
 _LOG_LEVELS = (logging.ERROR, logging.WARNING, logging.INFO)
@@ -65,7 +65,7 @@ def prepare_process() -> None:
     check(api().prepare_process(0))
 
 
-class Device:
+class Device(BoundToProcess):
     """An open device, with a thread of its own: your OpenGL context is left alone.
 
     name: a number as listed by devices(), or a part of the renderer's name in any case; None: the

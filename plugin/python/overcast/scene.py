@@ -8,6 +8,7 @@ import math
 import mmap
 import os
 import secrets
+import sys
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, BinaryIO, NamedTuple
 
@@ -17,18 +18,20 @@ from numpy.typing import ArrayLike, NDArray
 from . import _abi
 from ._arrays import choice, count, numbers
 from ._calls import Progress, Writer
-from ._library import Handle, api, check
+from ._library import BoundToProcess, Handle, api, check
 from ._mesh import address, mesh_of, transform_of
 from ._query import Limits, Query
 from ._rays import as_rays, rays
 from .device import Device, default_device
 from .hits import HIT, Hits
 
-if TYPE_CHECKING:
+if sys.version_info >= (3, 11):
+    from typing import Unpack
+elif TYPE_CHECKING:
     from typing_extensions import Unpack
 
 
-class Scene:
+class Scene(BoundToProcess):
     """Triangles that rays are traced against: add() meshes, commit(), intersect() and occluded().
 
     device: the device that traces; None: the first GPU, else the software renderer, shared by all
@@ -185,11 +188,14 @@ class Scene:
         skip, after, masks, filter: which hits count; see overcast.Limits.
         Returns Hits in the rays' shape.
         """
-        return self.intersect_rays(rays(origins, directions, t_min, t_max), out=out, **limits)
+        return self._intersect(rays(origins, directions, t_min, t_max), out, limits)
 
     def intersect_rays(self, rays: NDArray[np.void], *, out: Hits | None = None,
                        **limits: Unpack[Limits]) -> Hits:
         """intersect() of rays in records (see overcast.rays): nothing is copied."""
+        return self._intersect(rays, out, limits)
+
+    def _intersect(self, rays: NDArray[np.void], out: Hits | None, limits: Limits) -> Hits:
         rays = as_rays(rays)
         hits = Hits(np.empty(rays.shape, HIT)) if out is None else out
         answers = getattr(hits, "records", None)
@@ -205,10 +211,13 @@ class Scene:
                  t_max: ArrayLike = math.inf, **limits: Unpack[Limits]) -> NDArray[np.bool_]:
         """Tells which rays hit anything: True or False for each, in the rays' shape. The arguments
         are those of intersect()."""
-        return self.occluded_rays(rays(origins, directions, t_min, t_max), **limits)
+        return self._occluded(rays(origins, directions, t_min, t_max), limits)
 
     def occluded_rays(self, rays: NDArray[np.void], **limits: Unpack[Limits]) -> NDArray[np.bool_]:
         """occluded() of rays in records (see overcast.rays): nothing is copied."""
+        return self._occluded(rays, limits)
+
+    def _occluded(self, rays: NDArray[np.void], limits: Limits) -> NDArray[np.bool_]:
         rays = as_rays(rays)
         answers = np.empty(rays.shape, np.bool_)
         self._trace("occluded", rays, limits, answers)
@@ -225,12 +234,15 @@ class Scene:
         Returns Hits of shape (..., max_hits), with misses where a ray has fewer, and how many hits
         each ray has in all.
         """
-        return self.all_hits_of_rays(rays(origins, directions, t_min, t_max), max_hits=max_hits,
-                                     **limits)
+        return self._all_hits(rays(origins, directions, t_min, t_max), max_hits, limits)
 
     def all_hits_of_rays(self, rays: NDArray[np.void], *, max_hits: int | None = None,
                          **limits: Unpack[Limits]) -> tuple[Hits, NDArray[np.uint64]]:
         """all_hits() of rays in records (see overcast.rays): nothing is copied."""
+        return self._all_hits(rays, max_hits, limits)
+
+    def _all_hits(self, rays: NDArray[np.void], max_hits: int | None,
+                  limits: Limits) -> tuple[Hits, NDArray[np.uint64]]:
         rays = as_rays(rays)
         counts = np.zeros(rays.shape, np.uint64)
 
@@ -246,7 +258,7 @@ class Scene:
 
     def _trace(self, function: str, rays: NDArray[np.void], limits: Limits,
                *answers: int | NDArray[Any]) -> None:
-        query = Query(rays, **limits)
+        query = Query(rays, limits)
 
         def call() -> None:  # It keeps the arrays alive that the library reads and writes.
             places = (answer if isinstance(answer, int) else answer.ctypes.data

@@ -1,14 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tests that a caller's mistake raises an exception with one sentence, and the program goes on."""
 
+import copy
+import inspect
 import logging
 import os
 import pathlib
+import pickle
 import signal
 import subprocess
 import sys
 import threading
 import time
+import typing
 import unittest
 
 import numpy as np
@@ -77,6 +81,42 @@ class Sentences(unittest.TestCase):
             (ValueError, "out must be Hits of the rays' shape (), not array(1)",
              lambda: scene.intersect(*DOWN, out=np.array(1))),
         ])
+
+    def test_of_names_of_arguments(self):
+        scene, records = committed(), overcast.rays(*DOWN)
+        sentence = "there is no argument '{}'; skip, after, masks and filter say which hits count"
+        self.check([(TypeError, sentence.format(name), lambda name=name, call=call: call(name))
+                    for name in ("skp", "rays", "limits")
+                    for call in (lambda name: scene.intersect(*DOWN, **{name: 1}),
+                                 lambda name: scene.occluded(*DOWN, **{name: 1}),
+                                 lambda name: scene.all_hits(*DOWN, **{name: 1}))])
+        self.check([(TypeError, sentence.format("mask"), lambda call=call: call(records, mask=1))
+                    for call in (scene.intersect_rays, scene.occluded_rays,
+                                 scene.all_hits_of_rays)])
+        self.check([(TypeError, sentence.format("out"), lambda: scene.occluded(*DOWN, out=None))])
+
+    def test_of_pickles_and_copies(self):
+        scene, device = committed(), overcast.Device()
+        sentence = ("a {} is neither pickled nor copied; "
+                    "open one in the process that uses it")
+        self.check([(TypeError, sentence.format(name), lambda call=call, of=of: call(of))
+                    for name, of in (("scene", scene), ("device", device),
+                                     ("scene", scene.intersect), ("scene", [scene]))
+                    for call in (pickle.dumps, copy.deepcopy)
+                    if call is pickle.dumps or not callable(of)])
+        self.check([(TypeError, sentence.format("scene"), lambda: copy.copy(scene))])
+        hits = scene.intersect(*DOWN)
+        self.assertEqual(pickle.loads(pickle.dumps(hits)).records, hits.records)
+        error = pickle.loads(pickle.dumps(overcast.Error("so", overcast.Result.NO_DEVICE)))
+        self.assertEqual((str(error), error.code), ("so", overcast.Result.NO_DEVICE))
+
+    def test_hints_of_types_are_resolved(self):
+        if sys.version_info < (3, 11):
+            self.skipTest("Unpack is of Python 3.11")
+        for holder in (overcast.Scene, overcast.Device, overcast.Hits):
+            for name, function in inspect.getmembers(holder, inspect.isfunction):
+                with self.subTest(f"{holder.__name__}.{name}"):
+                    typing.get_type_hints(function)
 
     def test_of_meshes(self):
         scene = overcast.Scene()
