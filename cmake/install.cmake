@@ -54,5 +54,11 @@ function(ovc_install_python folder)
         FILES_MATCHING PATTERN "*.py" PATTERN "py.typed" PATTERN "__pycache__" EXCLUDE)
     install(FILES ${built} DESTINATION ${folder}/overcast ${ARGN})
 endfunction()
+# Not in the cache, so that a Python that is installed later is asked.
+if(NOT OVC_PYTHON_DIR)
+    set(OVC_PYTHON_DIR lib/python3/dist-packages)
+    message(STATUS "No Python (Debian: python3) tells where it looks for modules: ours is "
+        "installed into ${OVC_PYTHON_DIR} below the prefix")
+endif()
 ovc_install_python(${OVC_PYTHON_DIR} COMPONENT local)
 ovc_install_python(lib/python3/dist-packages COMPONENT debian EXCLUDE_FROM_ALL)

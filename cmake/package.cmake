@@ -42,8 +42,12 @@ a fixed budget of GPU memory and answers proven right, through OpenGL on a GPU
 or on Mesa's software renderer.
 
 This package has the library libovercast.so with its header, the command
-overcast, which renders .ply, .obj, .pbrt and .pov scenes, the Python module
-overcast, and overcast-tachyon, which runs tachyon with the library in it.")
+overcast, which renders .ply, .obj, .pbrt and .pov scenes, and the Python
+module overcast.")
+if(TARGET overcast_tachyon)
+    string(APPEND CPACK_DEBIAN_PACKAGE_DESCRIPTION
+        " overcast-tachyon runs tachyon with the library\nin it.")
+endif()
 # dpkg-shlibdeps finds the libraries that are linked. EGL and OpenGL are loaded at run time, so we
 # name them here; they need a driver, which is only recommended.
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
