@@ -590,9 +590,8 @@ typedef struct ovc_api {
      * nothing. Afterwards the scene takes rays. An empty scene is fine: all rays miss. Where it fails or is cancelled
      * (ovc_scene_config.progress) it leaves nothing behind, and may be called again to build. */
     ovc_result (*commit)(ovc_scene scene);
-    /* Writes the nearest hits of ray_count rays into hits[ray_count]. query may be NULL. Up to 64 rays, or
-     * 2,048 where the device is a software renderer, may be answered on the CPU, beside other calls; more are the kernel's,
-     * and calls with them take turns. */
+    /* Writes the nearest hits of ray_count rays into hits[ray_count]. query may be NULL. Up to 64 rays may be answered on the
+     * calling thread, beside other calls; more are the kernel's, and calls with them take turns. */
     ovc_result (*intersect)(ovc_scene scene, const ovc_ray* rays, size_t ray_count, ovc_hit* hits, const ovc_query* query);
     /* Sets occluded[i] to 1 when ray i hits anything, else to 0. query may be NULL. */
     ovc_result (*occluded)(ovc_scene scene, const ovc_ray* rays, size_t ray_count, uint8_t* occluded, const ovc_query* query);

@@ -6,6 +6,7 @@
 #include "gpu/walk/float_walk.h"
 #include "kdtree/restart.h"
 #include "plugin/resolve/resolve.h"
+#include "plugin/structure/structure.h"
 
 #include <algorithm>
 #include <array>
@@ -160,7 +161,7 @@ Hit answer_one(const BuiltScene& scene, const Ray& ray, const Exclusion& without
 template <class Query>
 class FewRays {
 public:
-    static constexpr size_t kMax = 64;
+    static constexpr size_t kMax = kMaxFewRays;
 
     FewRays(const BuiltScene& scene, Resolver<Query>& resolver)
         : scene_(scene),

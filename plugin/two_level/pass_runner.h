@@ -69,7 +69,6 @@ public:
     /// Gives back all GPU memory.
     void purge();
 
-    bool is_software() const { return gl_.info().is_software; }
     /// Whether a pass answers its rays for good, because all pages are resident.
     bool all_resident() const { return tracer_ && tracer_->all_resident(); }
 

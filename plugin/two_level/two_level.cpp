@@ -12,7 +12,6 @@
 #include "plugin/two_level/wave_round.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cassert>
 
 namespace ovc {
@@ -144,36 +143,19 @@ bool TwoLevel::occluded_on_cpu(const Ray& ray, const Exclusion& without,
     return answer_one</* kAnyHit= */ true>(scene_, ray, without).is_hit();
 }
 
-size_t TwoLevel::max_few_rays() const {
-    // A pass of the kernel begins after 75 us and more, when so many have been answered here. A
-    // software renderer has the same cores, and is hardly faster then.
-    constexpr size_t kOfOneThread = 64;
-    return passes_.is_software() && scene_.top.portals.empty() ? kMaxFewRays : kOfOneThread;
-}
-
 template <class Query>
 bool TwoLevel::answer_few(const Query& query, uint64_t& invalid) const {
-    constexpr size_t kGroup = FewRays<Query>::kMax;
-    const size_t count = query.rays.size(), groups = (count + kGroup - 1) / kGroup;
-    if (count > max_few_rays() || !has_cpu_tree() || !options_.certify || options_.tell_active ||
+    if (!has_cpu_tree() || !options_.certify || options_.tell_active ||
         !query.without.sieves.pass_all())
         return false;
-    std::atomic<uint64_t> all_invalid{0};
-    parallel_for(groups, 1, [&](size_t from, size_t to) {
-        for (size_t group = from; group < to; ++group) {
-            const size_t first = group * kGroup;
-            ovc_statistics statistics{};
-            CallWatch nobody;
-            {
-                Resolver resolver({scene_, options_, statistics, nobody},
-                                  query.part(first, std::min(kGroup, count - first)),
-                                  /* are_whole= */ true, /* alone= */ groups == 1);
-                FewRays(scene_, resolver).answer();
-            }
-            all_invalid += statistics.invalid_rays;
-        }
-    });
-    invalid += all_invalid;
+    ovc_statistics statistics{};
+    CallWatch nobody;
+    {
+        Resolver resolver({scene_, options_, statistics, nobody}, query, /* are_whole= */ true,
+                          /* alone= */ true);
+        FewRays(scene_, resolver).answer();
+    }
+    invalid += statistics.invalid_rays;
     return true;
 }
 

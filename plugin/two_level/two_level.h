@@ -70,8 +70,6 @@ private:
     template <class Query>
     Result<Done> trace(const Query& query);
     Result<Done> trace_nearest(NearestQuery query);
-    /// Returns how many rays are answered sooner without the kernel.
-    size_t max_few_rays() const;
     template <class Query>
     bool answer_few(const Query& query, uint64_t& invalid) const;
     /// Calls trace() and counts it as a call with so many rays.
