@@ -110,9 +110,9 @@ private:
                         local_ray(portal, ray, skip_behind(portal), kAnyHit, unused));
             return !told || is_certain_ || (kAnyHit && nearest_.is_hit());
         };
+        const auto units_of = [&](uint32_t page) { return scene_.pages[page].view().data(); };
         walk_units(
-            scene_.top.tree.view(), 0, NoPages(), 1,
-            [&](uint32_t) { return walked_ray(scene, p_); },
+            scene_.top.tree.view(), 0, units_of, 1, [&](uint32_t) { return walked_ray(scene, p_); },
             [&](uint32_t number, RaySet) { return offer(number) && kAnyHit; }, enter,
             [&](uint32_t, double) { return nearest_.limit(); });
         return told;
