@@ -38,11 +38,11 @@ struct RayOnWay {
     // For the planes of a node: of the near ones, then of the far ones with the other sign, so that
     // one max() finds where the ray enters all and where it leaves any.
     EightFloats scale[3], offset[3]; // as GridRay of shaders/box.glsl
-    EightBits near_first[3];         // the order in which a node's texel has them
+    int near[3];                     // where a node's texel has the near ones: at word 0 or 2
     EightFloats span;                // where the ray begins and ends
 
-    FourBits
-        by_axis; // the axes as x, y, z of shaders/triangle.glsl, which also tells what a line is
+    // As Line of shaders/triangle.glsl.
+    int x, y, z; // its axes
     float org[3], shear[2];
     int32_t turned; // the sign bit, if the ray goes down
 
@@ -54,7 +54,7 @@ struct RayOnWay {
     Named* named; // the answer
 
     int ahead_count;
-    UnitAhead ahead[kMaxAhead]; // the next one last
+    UnitAhead ahead[kMaxAhead]; // the stack: the next one last
 };
 
 /// What all rays of a walk share.
@@ -120,8 +120,7 @@ OVC_INLINE void set_grid(RayOnWay& ray, const uint32_t* header, const float* org
         const float o = (as_float(header[axis]) - org[axis]) * inv_dir;
         ray.scale[axis] = EightFloats{s, s, s, s, -s, -s, -s, -s};
         ray.offset[axis] = EightFloats{o, o, o, o, -o, -o, -o, -o};
-        ray.near_first[axis] =
-            dir[axis] < 0 ? EightBits{4, 5, 6, 7, 0, 1, 2, 3} : EightBits{0, 1, 2, 3, 4, 5, 6, 7};
+        ray.near[axis] = dir[axis] < 0 ? 2 : 0;
     }
 }
 
@@ -129,14 +128,15 @@ OVC_INLINE void set_grid(RayOnWay& ray, const uint32_t* header, const float* org
 OVC_INLINE void set_line(RayOnWay& ray, const float* org, const float* dir) {
     const bool along_z = magnitude(dir[2]) == 1.0f;
     const bool along_x = !along_z && magnitude(dir[1]) != 1.0f;
-    const int x = along_x ? 1 : 0, y = along_z ? 1 : 2, z = along_z ? 2 : (along_x ? 0 : 1);
-    ray.by_axis = FourBits{x, y, z, 3};
-    ray.turned = int32_t(bits(dir[z]) & 0x80000000u);
-    ray.org[0] = org[x];
-    ray.org[1] = org[y];
-    ray.org[2] = as_float(bits(org[z]) ^ uint32_t(ray.turned));
-    ray.shear[0] = dir[x];
-    ray.shear[1] = dir[y];
+    ray.x = along_x ? 1 : 0;
+    ray.y = along_z ? 1 : 2;
+    ray.z = along_z ? 2 : (along_x ? 0 : 1);
+    ray.turned = int32_t(bits(dir[ray.z]) & 0x80000000u);
+    ray.org[0] = org[ray.x];
+    ray.org[1] = org[ray.y];
+    ray.org[2] = as_float(bits(org[ray.z]) ^ uint32_t(ray.turned));
+    ray.shear[0] = dir[ray.x];
+    ray.shear[1] = dir[ray.y];
 }
 
 OVC_INLINE void set_out(const WalkScene& scene, const LocalRay& from, RayOnWay& ray) {
@@ -249,11 +249,10 @@ OVC_INLINE float low_of(const uint32_t* w) {
 /// Tests a triangle by itself.
 template <class Lanes>
 OVC_INLINE void test_alone(RayOnWay& ray, const float (&corners)[3][3], uint32_t number) {
-    const auto along = [&](int i) __attribute__((always_inline)) {
-        const int axis = ray.by_axis[i];
+    const auto along = [&](int axis) __attribute__((always_inline)) {
         return FourFloats{corners[0][axis], corners[1][axis], corners[2][axis], corners[0][axis]};
     };
-    test_triangle<Lanes, 1>(ray, corners_of(ray, along(0), along(1), along(2)), number);
+    test_triangle<Lanes, 1>(ray, corners_of(ray, along(ray.x), along(ray.y), along(ray.z)), number);
 }
 
 template <class Lanes>
@@ -274,26 +273,38 @@ template <class Lanes>
 OVC_INLINE void test_pair(RayOnWay& ray, const uint32_t* w) {
     if (w[15] & OVC_LOOSE_PAIR)
         return test_loose_pair<Lanes>(ray, w);
-    FourFloats v[4]; // corners by the ray's axes
+    FourFloats v[4];
     for (int i = 0; i < 4; ++i)
-        v[i] = __builtin_shuffle(load<FourFloats>(w + 4 * i), ray.by_axis);
+        v[i] = load<FourFloats>(w + 4 * i);
     const FourFloats xy01 = __builtin_shufflevector(v[0], v[1], 0, 4, 1, 5);
     const FourFloats xy23 = __builtin_shufflevector(v[2], v[3], 0, 4, 1, 5);
     const FourFloats z01 = __builtin_shufflevector(v[0], v[1], 2, 6, 3, 7);
     const FourFloats z23 = __builtin_shufflevector(v[2], v[3], 2, 6, 3, 7);
-    const FourCorners c = corners_of(ray, __builtin_shufflevector(xy01, xy23, 0, 1, 4, 5),
-                                     __builtin_shufflevector(xy01, xy23, 2, 3, 6, 7),
-                                     __builtin_shufflevector(z01, z23, 0, 1, 4, 5));
+    const FourFloats along[3] = {__builtin_shufflevector(xy01, xy23, 0, 1, 4, 5),
+                                 __builtin_shufflevector(xy01, xy23, 2, 3, 6, 7),
+                                 __builtin_shufflevector(z01, z23, 0, 1, 4, 5)};
+    const FourCorners c = corners_of(ray, along[ray.x], along[ray.y], along[ray.z]);
     test_triangle<Lanes, 1>(ray, c, w[3]);
     if (w[7] != OVC_NO_TRIANGLE)
         test_triangle<Lanes, 3>(ray, c, w[7]);
 }
 
+/// Returns the words of a texel, from the one at `near` on; 0 or 2.
+OVC_INLINE FourBits near_first(const uint32_t* texel, int near) {
+    using TwoWords = long long __attribute__((vector_size(16)));
+    TwoWords words;
+    long long half;
+    __builtin_memcpy(&half, texel + near, sizeof half);
+    words[0] = half;
+    __builtin_memcpy(&half, texel + (near ^ 2), sizeof half);
+    words[1] = half;
+    return FourBits(words);
+}
+
 /// Sets t to the times of the eight planes in a texel of a node.
 OVC_INLINE void times_at(const RayOnWay& ray, int axis, const uint32_t* texel, EightFloats& t) {
-    const FourBits words = load<FourBits>(texel);
-    const EightBits twice = __builtin_shufflevector(words, words, 0, 0, 1, 1, 2, 2, 3, 3);
-    const EightBits planes = __builtin_shuffle(twice, ray.near_first[axis])
+    const FourBits words = near_first(texel, ray.near[axis]);
+    const EightBits planes = __builtin_shufflevector(words, words, 0, 0, 1, 1, 2, 2, 3, 3)
                              << EightBits{16, 0, 16, 0, 16, 0, 16, 0};
     t = __builtin_convertvector(planes, EightFloats) * ray.scale[axis] + ray.offset[axis];
 }
