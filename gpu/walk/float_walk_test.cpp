@@ -31,6 +31,8 @@ public:
     }
 
     const std::vector<TriangleId>& triangles() const { return triangles_; }
+    /// A rounding of a coordinate in the scene's frame, in the world.
+    double rounding() const { return 0x1p-24 / scene_leaf(level1_.bounds).frame.scale; }
     bool empty() const { return pages_.empty(); }
     bool has_loose_pairs() const { return std::ranges::any_of(pages_, &Page::has_loose_pairs); }
     Triangle triangle(uint32_t number) const { return soup_.triangle(numbers_.id(number)); }
@@ -145,6 +147,54 @@ TEST(FloatWalk, NamesTheAnswerByAnyInstructions) {
                 }
         }
     EXPECT_GT(loose, 0u) << "no unit has triangles that share no side";
+}
+
+void expect_answers(const Walked& scene, const Soup& soup, std::span<const Ray> rays) {
+    for (const bool any_hit : {false, true}) {
+        const auto named = scene.walk(float_walk(), rays, {}, any_hit);
+        for (size_t i = 0; i < rays.size(); ++i) {
+            SCOPED_TRACE(i);
+            expect_answer(scene, named[i], rays[i],
+                          test::brute_force(soup, scene.triangles(), rays[i]), any_hit);
+        }
+    }
+}
+
+/// The rays go past sides of triangles, some roundings to either side. They would show it if the
+/// bound were too small.
+TEST(FloatWalk, NamesTheAnswerAtSides) {
+    const Soup soup = test::random_soup(11, 1000, 0.3);
+    const Walked scene(soup, 3);
+    test::Random random(12);
+    std::vector<Ray> rays;
+    for (const TriangleId id : scene.triangles())
+        for (int k = 0; k < 4; ++k) {
+            const Triangle t = soup.triangle(id);
+            const dvec3 on_side = t[0] + random(0, 1) * (t[1] - t[0]);
+            const dvec3 from = on_side + 0.3 * random.point(-1, 1);
+            const dvec3 to = on_side + 20 * scene.rounding() * random.point(-1, 1);
+            rays.push_back({from, 0, to - from});
+        }
+    expect_answers(scene, soup, rays);
+}
+
+/// The rays begin or end some roundings before or behind a triangle.
+TEST(FloatWalk, NamesTheAnswerAtTheEndsOfRays) {
+    const Soup soup = test::random_soup(13, 1000, 0.3);
+    const Walked scene(soup, 3);
+    test::Random random(14);
+    for (const double roundings : {3.0, 30.0, 3000.0}) {
+        std::vector<Ray> rays;
+        for (const TriangleId id : scene.triangles()) {
+            const Triangle t = soup.triangle(id);
+            const dvec3 inside = (t[0] + t[1] + t[2]) / 3.0;
+            const dvec3 dir = glm::normalize(random.point(-1, 1));
+            const double off = roundings * scene.rounding() * random(-1, 1);
+            rays.push_back({inside + off * dir, 0, dir});
+            rays.push_back({inside - 0.2 * dir, 0, dir, 0.2 + off});
+        }
+        expect_answers(scene, soup, rays);
+    }
 }
 
 TEST(FloatWalk, PassesOverTheTriangleThatARayDoesNotSee) {
