@@ -55,8 +55,8 @@ struct RayStates {
 /// Returns the frame of a leaf for to_frame().
 LanesFrame lanes_frame(const Leaf& leaf);
 
-/// Fills in the rows of the states in the frame of a top-level tree: that of the scene or, where
-/// there is one, that behind the way in. Rows of states that are not set may hold anything.
+/// Fills in the rows of those states that have a bit in `which`, in the frame of a top-level tree:
+/// that of the scene or, where there is one, that behind the way in. Others may hold anything.
 void to_tree_frame(const LanesFrame& scene, const Portal* way_in, const RayStates& states,
                    uint32_t which, LocalRows& local);
 /// Returns the ray in a row.

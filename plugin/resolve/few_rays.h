@@ -164,9 +164,7 @@ public:
     static constexpr size_t kMax = kMaxFewRays;
 
     FewRays(const BuiltScene& scene, Resolver<Query>& resolver)
-        : scene_(scene),
-          resolver_(resolver),
-          frame_(lanes_frame(scene.top.scene_in(scene.level1.bounds))) {}
+        : scene_(scene), resolver_(resolver), frame_(lanes_frame(resolver.scene_leaf())) {}
 
     void answer() {
         const size_t count = resolver_.query().rays.size();

@@ -69,6 +69,8 @@ public:
     /// Replaces the query where its arrays have moved or have more rays than before.
     void show(const Query& query) { query_ = query; }
 
+    /// The frame in which rays set out, and the box around what the top-level tree leads to.
+    const Leaf& scene_leaf() const { return scene_leaf_; }
     Exclusion exclusion(uint32_t i) const {
         Exclusion without = query_.without[i];
         without.after.is_certain = query_.has_own_places;

@@ -28,8 +28,8 @@ namespace ovc {
 
 class LeafStore;
 
-/// So many rays are answered by the CPU about when a pass of the kernel has begun: that takes 75 us
-/// and more, whatever is asked, and a ray on the CPU 0.1 to 1 (docs/benchmarks.md, "Single rays").
+/// So many rays the CPU answers before a pass of the kernel has begun: that takes 75 us and more,
+/// whatever is asked, and a ray on the CPU 0.1 to 1 (docs/benchmarks.md, "Single rays").
 inline constexpr size_t kMaxFewRays = 64;
 
 /// Answers rays through a soup. It takes one call at a time, except where a function says

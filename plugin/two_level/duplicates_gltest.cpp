@@ -97,12 +97,7 @@ TEST_F(TwoLevelGl, DuplicatesAreNotFlaggedForEachOther) {
     const Soup soup = tripled(test::closed_grid(100));
     const auto structure = build(soup, {});
     ASSERT_TRUE(structure);
-    test::Random random(5);
-    std::vector<Ray> rays(20000);
-    for (Ray& ray : rays) {
-        ray.org = random.point(-1, 1) + dvec3(0, 0, 4);
-        ray.dir = random.point(-1, 1) - ray.org;
-    }
+    const auto rays = test::rays_from_outside(5, 20000);
     std::vector<Hit> hits(rays.size());
     ASSERT_TRUE(ok(structure->intersect(rays, {}, hits)));
     EXPECT_LE(structure->statistics().flagged, rays.size() / 100);

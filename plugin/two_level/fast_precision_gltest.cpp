@@ -20,12 +20,7 @@ TEST_F(TwoLevelGl, FastPrecisionIsCloseAndFlagsNothing) {
                                             .certify = false,
                                             .compute = compute});
         ASSERT_TRUE(structure);
-        test::Random random(15);
-        std::vector<Ray> rays(5000);
-        for (Ray& ray : rays) {
-            ray.org = random.point(-1, 1) + dvec3(0, 0, 4);
-            ray.dir = random.point(-1, 1) - ray.org;
-        }
+        const auto rays = test::rays_from_outside(15, 5000);
         std::vector<Hit> hits(rays.size());
         ASSERT_TRUE(ok(structure->intersect(rays, {}, hits)));
         size_t other = 0;

@@ -94,40 +94,40 @@ void few_at_a_time(size_t rays, const ovc_query* query, Ask&& ask) {
     }
 }
 
-/// Returns the nearest hits, and expects them to be the same bits by either way: by the kernel, and
-/// few at a time.
-inline std::vector<ovc_hit> answers(ovc_scene scene, std::span<const ovc_ray> rays,
-                                    const ovc_query* query = nullptr) {
-    std::vector<ovc_hit> hits(rays.size()), aside(rays.size());
+/// Returns an answer for each ray, and expects it to be the same bits by either way: by the kernel,
+/// and few rays at a time. trace(rays, count, answers, query) calls the ABI.
+template <class T, class Trace>
+std::vector<T> traced_both_ways(std::span<const ovc_ray> rays, const ovc_query* query,
+                                Trace&& trace) {
+    std::vector<T> answers(rays.size()), aside(rays.size());
     const ovc_query asked = by_kernel(query);
-    EXPECT_EQ(api().intersect(scene, rays.data(), rays.size(), hits.data(), &asked), OVC_OK);
+    EXPECT_EQ(trace(rays.data(), rays.size(), answers.data(), &asked), OVC_OK);
     if (query && (query->masks || query->filter))
-        return hits;
+        return answers;
     few_at_a_time(rays.size(), query, [&](size_t first, size_t count, const ovc_query& some) {
-        EXPECT_EQ(api().intersect(scene, &rays[first], count, &aside[first], &some), OVC_OK);
+        EXPECT_EQ(trace(&rays[first], count, &aside[first], &some), OVC_OK);
     });
     for (size_t i = 0; i < rays.size(); ++i)
-        EXPECT_EQ(std::memcmp(&hits[i], &aside[i], sizeof(ovc_hit)), 0) << "ray " << i;
-    return hits;
+        EXPECT_EQ(std::memcmp(&answers[i], &aside[i], sizeof(T)), 0) << "ray " << i;
+    return answers;
+}
+
+/// The nearest hits.
+inline std::vector<ovc_hit> answers(ovc_scene scene, std::span<const ovc_ray> rays,
+                                    const ovc_query* query = nullptr) {
+    return traced_both_ways<ovc_hit>(
+        rays, query, [&](auto&&... asked) { return api().intersect(scene, asked...); });
 }
 inline std::vector<ovc_hit> answers(const AbiScene& scene, const std::vector<Ray>& rays,
                                     const ovc_query* query = nullptr) {
     return answers(scene.get(), std::span(as_abi(rays), rays.size()), query);
 }
 
-/// The same for occlusion.
+/// Whether anything is hit.
 inline std::vector<uint8_t> occlusion(ovc_scene scene, std::span<const ovc_ray> rays,
                                       const ovc_query* query = nullptr) {
-    std::vector<uint8_t> occluded(rays.size()), aside(rays.size());
-    const ovc_query asked = by_kernel(query);
-    EXPECT_EQ(api().occluded(scene, rays.data(), rays.size(), occluded.data(), &asked), OVC_OK);
-    if (query && (query->masks || query->filter))
-        return occluded;
-    few_at_a_time(rays.size(), query, [&](size_t first, size_t count, const ovc_query& some) {
-        EXPECT_EQ(api().occluded(scene, &rays[first], count, &aside[first], &some), OVC_OK);
-    });
-    EXPECT_EQ(occluded, aside);
-    return occluded;
+    return traced_both_ways<uint8_t>(
+        rays, query, [&](auto&&... asked) { return api().occluded(scene, asked...); });
 }
 
 inline ovc_statistics statistics(const AbiScene& scene) {

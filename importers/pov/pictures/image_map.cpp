@@ -206,8 +206,10 @@ ImageMap image_of_codes(const NamedPicture& named, const MapWords& words) {
         image.channel = has_opacity || !named.picture->indices.empty()
                             ? ImageTexture::Channel::Opacity
                             : ImageTexture::Channel::Red;
-        if (image.channel == ImageTexture::Channel::Opacity)
-            image.scale = vec3(-1), image.offset = vec3(1);
+        if (image.channel == ImageTexture::Channel::Opacity) {
+            image.scale = vec3(-1);
+            image.offset = vec3(1);
+        }
     }
     return image_map_of(named.start, named.path, image);
 }

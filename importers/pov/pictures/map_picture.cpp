@@ -37,15 +37,11 @@ dvec2 MapPicture::size() const {
     return {picture().width, picture().height};
 }
 
-/// Returns the number of a texel among `count`.
+/// Returns the number of a texel among `count`. POV-Ray mirrors no picture.
 static size_t wrapped(double number, uint32_t count, Beyond beyond) {
     const double n = count;
     if (beyond == Beyond::Repeat)
         return size_t(number - n * std::floor(number / n));
-    if (beyond == Beyond::Mirror) {
-        const double turn = number - 2 * n * std::floor(number / (2 * n));
-        return size_t(std::min(turn, 2 * n - 1 - turn));
-    }
     return size_t(std::clamp(number, 0.0, n - 1));
 }
 
