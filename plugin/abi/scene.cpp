@@ -164,6 +164,17 @@ ovc_result save(ovc_scene scene, ovc_write_function write, void* user) {
     });
 }
 
+/// Whether the call that has the turn of a scene, to which no others come any more, ends while this
+/// thread, inside a stream, waits for it.
+static bool call_ends(ovc_scene scene) {
+    const SharedBudget::Waiting waiting(scene->device->gl->budget());
+    const bool has_ended =
+        scene->turn.lock_while([&] { return !waiting.is_in_vain(scene->turn.owner()); });
+    if (has_ended)
+        scene->turn.unlock();
+    return has_ended;
+}
+
 void destroy_scene(ovc_scene scene) {
     if (!is_scene(scene, "destroy_scene") || in_host_function)
         return;
@@ -176,6 +187,13 @@ void destroy_scene(ovc_scene scene) {
     uint32_t alive = kSceneMagic;
     if (!scene->magic.compare_exchange_strong(alive, kDestroyed))
         return; // another thread destroys it
+    if (in_stream && !call_ends(scene)) {
+        scene->magic = kSceneMagic;
+        say(device->log, LogLevel::Error,
+            "destroy_scene: called from within a stream that leaves a call on the scene no room in "
+            "the budget that they share; the scene stays");
+        return;
+    }
     scene->submissions.stop();
     {
         const std::lock_guard turn(scene->turn); // a call that is still running ends first

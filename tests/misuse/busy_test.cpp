@@ -226,6 +226,10 @@ TEST_F(Busy, AStreamsCallOnASceneThatWaitsForItsRoomIsRefused) {
             api().release(ticket);
             return result;
         },
+        [&](ovc_scene scene) {
+            api().destroy_scene(scene); // which would wait for the other thread
+            return intersect(scene, 100);
+        },
     };
     for (const auto& ask : asks) {
         nested.ask = ask;
