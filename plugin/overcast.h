@@ -138,8 +138,8 @@ typedef enum ovc_precision {
 } ovc_precision;
 
 typedef enum ovc_kernel {
-    OVC_KERNEL_AUTO = 0, /* whichever is faster on this device */
-    OVC_KERNEL_FRAGMENT = 1,
+    OVC_KERNEL_AUTO = 0, /* whichever is faster on this device; for batches of up to 4096 rays that may be the CPU */
+    OVC_KERNEL_FRAGMENT = 1, /* answers all batches of more than 64 rays, as the next one does */
     OVC_KERNEL_COMPUTE = 2
 } ovc_kernel;
 
@@ -591,7 +591,7 @@ typedef struct ovc_api {
      * (ovc_scene_config.progress) it leaves nothing behind, and may be called again to build. */
     ovc_result (*commit)(ovc_scene scene);
     /* Writes the nearest hits of ray_count rays into hits[ray_count]. query may be NULL. Up to 64 rays may be answered on the
-     * calling thread, beside other calls; more are the kernel's, and calls with them take turns. */
+     * calling thread, and up to 4096 on all cores, beside other calls; more are the kernel's, and calls with them take turns. */
     ovc_result (*intersect)(ovc_scene scene, const ovc_ray* rays, size_t ray_count, ovc_hit* hits, const ovc_query* query);
     /* Sets occluded[i] to 1 when ray i hits anything, else to 0. query may be NULL. */
     ovc_result (*occluded)(ovc_scene scene, const ovc_ray* rays, size_t ray_count, uint8_t* occluded, const ovc_query* query);

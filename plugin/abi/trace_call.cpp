@@ -24,11 +24,9 @@ bool is_plain(ovc_scene scene, const RayCall& call) {
            scene->streaming != std::this_thread::get_id();
 }
 
-/// Answers a batch that is not worth a call of the kernel, beside other calls. Returns false where
-/// it is to be traced like any other.
+/// Answers a small batch on the CPU, beside other calls. Returns false where the kernel is to
+/// answer it.
 bool answer_few(ovc_scene scene, const RayCall& call) {
-    if (call.rays.size() > kMaxFewRays || !is_plain(scene, call))
-        return false;
     SingleRays::Call few(scene->single_rays);
     std::vector<Hit> after;
     const Exclusions without = exclusions_of(call, after);
@@ -107,6 +105,27 @@ bool trace_with_others(ovc_scene scene, const RayCall& call) {
     return traced;
 }
 
+/// Traces a batch in the scene's turn. mode: the caller's.
+void trace_alone(ovc_scene scene, const RayCall& call, HostFloatMode& mode) {
+    AskedProgress progress(call.query, mode);
+    TraceWatch* const watch = call.query.progress ? &progress : nullptr;
+    in_turn(
+        scene, call.name, [&] { return progress.goes_on(0); },
+        [&] { trace(call, committed(scene, call.name), watch); });
+}
+
+/// Answers a small batch on the CPU or by_kernel(), whichever was faster lately. One batch in 64
+/// may begin a trial, so that hosts that ask few batches have the kernel answer all.
+template <class ByKernel>
+void by_faster_way(ovc_scene scene, const RayCall& call, ByKernel&& by_kernel) {
+    FasterWay& ways = scene->ways_of_batches[call.any_hit];
+    FasterWay::Use use = ways.begin();
+    use.work = call.rays.size();
+    if (use.way == 0 || !answer_few(scene, call))
+        by_kernel();
+    ways.end(use, /* may_look= */ ++scene->batches_asked % 64 == 0);
+}
+
 /// Traces a batch, in the scene's turn unless it is small. make_call() checks the arguments, which
 /// needs no turn.
 template <class MakeCall>
@@ -114,13 +133,14 @@ ovc_result batch_of_rays(ovc_scene scene, const char* name, MakeCall&& make_call
     HostFloatMode mode;
     return beside_scene(scene, name, [&] {
         const RayCall call = make_call();
-        if (answer_few(scene, call) || (may_join(scene, call) && trace_with_others(scene, call)))
+        if (call.rays.size() <= kMaxFewRays && is_plain(scene, call) && answer_few(scene, call))
             return;
-        AskedProgress progress(call.query, mode);
-        TraceWatch* const watch = call.query.progress ? &progress : nullptr;
-        in_turn(
-            scene, name, [&] { return progress.goes_on(0); },
-            [&] { trace(call, committed(scene, name), watch); });
+        if (!may_join(scene, call))
+            return trace_alone(scene, call, mode);
+        by_faster_way(scene, call, [&] {
+            if (!trace_with_others(scene, call))
+                trace_alone(scene, call, mode);
+        });
     });
 }
 

@@ -79,7 +79,8 @@ struct Simulation {
                                               std::chrono::duration<double>(seconds));
         size_t calls = 0, by_way1 = 0;
         while (now < end) {
-            const FasterWay::Use use = way.begin([] { return now; });
+            FasterWay::Use use = way.begin([] { return now; });
+            use.work = use.way == 0 ? 1 : work1;
             now += use.way == 0 ? way0 : way1;
             way.end(use, true, [] { return now; });
             now += std::chrono::milliseconds(1);
@@ -90,6 +91,7 @@ struct Simulation {
     }
 
     FasterWay way;
+    uint64_t work1 = 1; // that a call does by way 1
 };
 
 using std::chrono::microseconds;
@@ -115,6 +117,13 @@ TEST(FasterWay, DoesNotChangeForATrifle) {
     Simulation::now = FasterWay::Time(std::chrono::hours(1));
     simulation.run(10, microseconds(300), microseconds(290));
     EXPECT_EQ(simulation.way.way(), 0);
+}
+
+TEST(FasterWay, ComparesTheWorkOfCalls) {
+    Simulation simulation;
+    Simulation::now = FasterWay::Time(std::chrono::hours(1));
+    simulation.work1 = 4;
+    EXPECT_GT(simulation.run(10, microseconds(100), microseconds(300)), 0.95);
 }
 
 TEST(FasterWay, ManyThreadsMayAskAtOnce) {

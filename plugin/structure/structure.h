@@ -74,9 +74,10 @@ public:
     virtual bool occluded_on_cpu(const Ray&, const Exclusion&, const RaySieve&) const {
         return false;
     }
-    /// Answer at most kMaxFewRays rays on the CPU, where that is sooner than intersect() and
-    /// occluded() are: with the same bits, from any thread and beside all other calls. Add to
-    /// `invalid` how many rays are. Return false, having done nothing, where it is not sooner.
+    /// Answer rays on the CPU: with the same bits as intersect() and occluded(), from any thread
+    /// and beside all other calls; on all cores where there are more than kMaxFewRays. Add to
+    /// `invalid` how many are. Return false, having done nothing, where the kernel is to answer
+    /// them.
     virtual bool intersect_few(RaySpan, const Exclusions&, std::span<Hit>,
                                [[maybe_unused]] uint64_t& invalid) const {
         return false;

@@ -66,7 +66,8 @@ TwoLevelOptions two_level_options(const ovc_scene_config& config) {
                             config.leaves,
                             config.precision != OVC_PRECISION_FAST,
                             config.kernel != OVC_KERNEL_FRAGMENT,
-                            config.tell_active == 1};
+                            config.tell_active == 1,
+                            config.kernel != OVC_KERNEL_AUTO};
     options.saved = {static_cast<const std::byte*>(config.saved), size_t(config.saved_bytes)};
     if (const auto choice = variant_choice(config, options.given_variant))
         options.variant = *choice;

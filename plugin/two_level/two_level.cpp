@@ -49,7 +49,8 @@ Result<Done> TwoLevel::trace(const Query& query) {
     const Result<SharedBudget::Use> use = passes_.begin_use();
     if (!use)
         return use.error();
-    const bool in_one_pass = passes_.all_resident() && !query.has_sieves();
+    was_all_resident_ = passes_.all_resident();
+    const bool in_one_pass = was_all_resident_ && !query.has_sieves();
     const Result<Done> done = in_one_pass ? trace_in_one_pass(tracing_, passes_, query)
                                           : trace_in_waves(tracing_, passes_, query);
     return done ? watch_.unless_cancelled() : done;
@@ -145,9 +146,29 @@ bool TwoLevel::occluded_on_cpu(const Ray& ray, const Exclusion& without,
 
 template <class Query>
 bool TwoLevel::answer_few(const Query& query, uint64_t& invalid) const {
+    const size_t count = query.rays.size();
     if (!has_cpu_tree() || !options_.certify || options_.tell_active ||
         !query.without.sieves.pass_all())
         return false;
+    if (count <= kMaxFewRays) {
+        invalid += answer_group(query);
+        return true;
+    }
+    if (options_.kernel_alone || !was_all_resident_)
+        return false;
+    std::atomic<uint64_t> invalid_of_all{0};
+    const size_t groups = (count + kMaxFewRays - 1) / kMaxFewRays;
+    parallel_for(groups, 1, [&](size_t first, size_t last) {
+        for (size_t at = first * kMaxFewRays; at < std::min(last * kMaxFewRays, count);
+             at += kMaxFewRays)
+            invalid_of_all += answer_group(query.part(at, std::min(kMaxFewRays, count - at)));
+    });
+    invalid += invalid_of_all;
+    return true;
+}
+
+template <class Query>
+uint64_t TwoLevel::answer_group(const Query& query) const {
     ovc_statistics statistics{};
     CallWatch nobody;
     {
@@ -155,8 +176,7 @@ bool TwoLevel::answer_few(const Query& query, uint64_t& invalid) const {
                           /* alone= */ true);
         FewRays(scene_, resolver).answer();
     }
-    invalid += statistics.invalid_rays;
-    return true;
+    return statistics.invalid_rays;
 }
 
 bool TwoLevel::intersect_few(RaySpan rays, const Exclusions& without, std::span<Hit> hits,

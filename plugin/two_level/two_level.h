@@ -10,6 +10,7 @@
 #include "plugin/structure/structure.h"
 #include "plugin/two_level/pass_runner.h"
 
+#include <atomic>
 #include <memory>
 #include <span>
 #include <vector>
@@ -72,6 +73,9 @@ private:
     Result<Done> trace_nearest(NearestQuery query);
     template <class Query>
     bool answer_few(const Query& query, uint64_t& invalid) const;
+    /// Answers at most kMaxFewRays rays. Returns how many are invalid.
+    template <class Query>
+    uint64_t answer_group(const Query& query) const;
     /// Calls trace() and counts it as a call with so many rays.
     template <class Trace>
     Result<Done> counted(uint64_t& rays_of_a_kind, size_t rays, Trace&& trace);
@@ -82,6 +86,9 @@ private:
     ovc_statistics statistics_{sizeof(ovc_statistics)};
     const Tracing tracing_{scene_, options_, statistics_, watch_};
     PassRunner passes_;
+    /// Whether the last call found all pages in the pool. Where it did not, answers on the CPU
+    /// would make it a matter of time which pages come and go.
+    std::atomic<bool> was_all_resident_{false};
     std::vector<uint8_t> was_active_; // per leaf, at the last take_active()
 };
 

@@ -134,6 +134,9 @@ private:
         BackendOptions options = options_.backend;
         if (options.kind == BackendKind::Auto)
             options.kind = BackendKind::TwoLevel; // so that no CPU backend takes its place
+        if (options.kind == BackendKind::TwoLevel && options.kernel == OVC_KERNEL_AUTO &&
+            options.kernel_variant.empty())
+            options.kernel = OVC_KERNEL_COMPUTE; // nor the CPU the kernel's in small batches
         options.precision = precision;
         return make_backend(soup_, options, log);
     }
