@@ -177,6 +177,10 @@ private:
         if (a.width != b.width || a.height != b.height)
             return cannot_be_compared(fmt::format("{} has {} x {} pixels, {} has {} x {}", a_,
                                                   a.width, a.height, b_, b.width, b.height));
+        if (a.x != b.x || a.y != b.y)
+            return cannot_be_compared(fmt::format("{} begins at pixel {}, {} of its picture, {} at "
+                                                  "{}, {}",
+                                                  a_, a.x, a.y, b_, b.x, b.y));
         if (a.coding != b.coding)
             encode_srgb(a.coding == Coding::Linear ? a : b);
         else if (a.coding == Coding::Srgb)

@@ -35,8 +35,9 @@ static Layer channel_of(const Picture& picture, size_t sample, const char* name)
     return layer;
 }
 
-static Result<Channels> png_channels(std::span<const uint8_t> file) {
-    const Result<Picture> picture = read_png(file);
+static Result<Channels> png_channels(std::string_view file) {
+    const Result<Picture> picture =
+        read_png({reinterpret_cast<const uint8_t*>(file.data()), file.size()});
     if (!picture)
         return picture.error();
     Channels channels{picture->width, picture->height, Coding::Srgb, {}};
@@ -59,16 +60,13 @@ Result<Channels> read_channels(const fs::path& path) {
     if (!stream)
         return failed(fmt::format("cannot be read: {}{}", std::strerror(errno),
                                   errno == ENOENT ? did_you_mean_file(path) : ""));
-    char magic[4] = {};
-    stream.read(magic, sizeof(magic));
-    Result<Channels> channels = Error{"found neither PNG nor OpenEXR"};
-    if (std::memcmp(magic, "\x89PNG", 4) == 0) {
-        std::vector<char> file(magic, magic + sizeof(magic)); // a pipe cannot go back
-        file.insert(file.end(), std::istreambuf_iterator<char>(stream), {});
-        channels = png_channels({reinterpret_cast<const uint8_t*>(file.data()), file.size()});
-    } else if (std::memcmp(magic, "\x76\x2f\x31\x01", 4) == 0) {
-        channels = read_exr(path);
-    }
+    std::string file(4, 0);
+    stream.read(file.data(), std::streamsize(file.size()));
+    const bool is_png = file == "\x89PNG";
+    if (!is_png && file != "\x76\x2f\x31\x01")
+        return failed("found neither PNG nor OpenEXR");
+    file.append(std::istreambuf_iterator<char>(stream), {}); // which may be a pipe
+    Result<Channels> channels = is_png ? png_channels(file) : read_exr(file);
     return channels ? std::move(channels) : failed(channels.error().message);
 }
 

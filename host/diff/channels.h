@@ -20,6 +20,7 @@ struct Channels {
     uint32_t height = 0;
     Coding coding = Coding::Linear;
     std::vector<Layer> all; // each width x height
+    int64_t x = 0, y = 0;   // of the first pixel, where an .exr is a part of a larger picture
 
     size_t size() const { return size_t(width) * height; }
     /// Returns the channel of that name; null where there is none.
@@ -38,8 +39,8 @@ void encode_srgb(Channels& channels);
 /// Gives opacity, which is 1 everywhere, to a .png without it beside one that has it.
 void add_opacity(Channels& a, Channels& b);
 
-/// Returns the channels of an .exr file of one part, halves as floats. Error: what is wrong,
-/// without the file's name.
-Result<Channels> read_exr(const std::filesystem::path& path);
+/// Returns the channels of an .exr file of one part, of which these are the bytes, halves as
+/// floats. Error: what is wrong, without the file's name.
+Result<Channels> read_exr(std::string_view file);
 
 } // namespace ovc

@@ -4,6 +4,10 @@
 
 #include "host/diff/verdict.h"
 
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfOutputFile.h>
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
@@ -12,6 +16,8 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <sys/stat.h>
+#include <thread>
 #include <unistd.h>
 
 namespace ovc {
@@ -158,6 +164,45 @@ TEST(Compare, ReadsWhatWasWritten) {
     EXPECT_LT(compare(*exr, *png).layers.at(0).errors->max, 1.0 / 65535)
         << "linear light as codes, clamped as the file is";
     std::filesystem::remove_all(folder);
+}
+
+TEST(Compare, ReadsPipes) {
+    const std::filesystem::path folder =
+        std::filesystem::temp_directory_path() / ("overcast_pipes_" + std::to_string(getpid()));
+    std::filesystem::create_directories(folder);
+    for (const char* name : {"a.exr", "a.png"}) {
+        ASSERT_TRUE(save_image(Image(400, 300), folder / name));
+        std::ifstream in(folder / name, std::ios::binary);
+        const std::string whole((std::istreambuf_iterator<char>(in)), {});
+        const std::filesystem::path pipe = folder / (std::string("pipe_") + name);
+        ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+        std::thread writer([&] { std::ofstream(pipe, std::ios::binary) << whole; });
+        const Result<Channels> read = read_channels(pipe);
+        writer.join();
+        ASSERT_TRUE(read) << read.error().message;
+        EXPECT_EQ(read->size(), 120000u);
+    }
+    std::filesystem::remove_all(folder);
+}
+
+TEST(Compare, KnowsWhereAPartOfAPictureBegins) {
+    const std::filesystem::path path =
+        std::filesystem::temp_directory_path() / ("overcast_part_" + std::to_string(getpid()));
+    Imf::Header header(Imath::Box2i({10, 20}, {109, 119}), Imath::Box2i({30, 50}, {33, 51}));
+    header.channels().insert("R", Imf::Channel(Imf::FLOAT));
+    {
+        std::vector<float> values(8, 0.5f);
+        Imf::FrameBuffer frame;
+        frame.insert("R", Imf::Slice::Make(Imf::FLOAT, values.data(), header.dataWindow()));
+        Imf::OutputFile file(path.c_str(), header);
+        file.setFrameBuffer(frame);
+        file.writePixels(2);
+    }
+    const Result<Channels> part = read_channels(path);
+    ASSERT_TRUE(part) << part.error().message;
+    EXPECT_EQ(part->x, 20);
+    EXPECT_EQ(part->y, 30);
+    std::filesystem::remove(path);
 }
 
 TEST(Compare, DamagedFilesAreRefused) {

@@ -20,6 +20,8 @@
 #include <algorithm>
 #include <cassert>
 #include <exception>
+#include <stdexcept>
+#include <string_view>
 
 namespace ovc {
 
@@ -47,6 +49,26 @@ public:
 
 private:
     std::string& bytes_;
+    size_t at_ = 0;
+};
+
+/// The bytes of a file, because OpenEXR goes back and forth in one.
+class BytesStream final : public Imf::IStream {
+public:
+    explicit BytesStream(std::string_view bytes) : IStream("memory"), bytes_(bytes) {}
+
+    bool read(char* to, int size) override {
+        if (at_ > bytes_.size() || size_t(size) > bytes_.size() - at_)
+            throw std::runtime_error("it ends early");
+        std::copy_n(&bytes_[at_], size, to);
+        at_ += size_t(size);
+        return at_ < bytes_.size();
+    }
+    uint64_t tellg() override { return at_; }
+    void seekg(uint64_t at) override { at_ = at; }
+
+private:
+    const std::string_view bytes_;
     size_t at_ = 0;
 };
 
@@ -110,7 +132,13 @@ static Result<Channels> read_all(Imf::InputFile& file) {
     if (width < 1 || height < 1 || uint64_t(width) * uint64_t(height) > kMaxPixels)
         return Error{fmt::format("found a picture of {} x {}, expected 1 to {} pixels", width,
                                  height, kMaxPixels)};
-    Channels channels{uint32_t(width), uint32_t(height), Coding::Linear, {}};
+    const Imath::V2i corner = file.header().displayWindow().min;
+    Channels channels{uint32_t(width),
+                      uint32_t(height),
+                      Coding::Linear,
+                      {},
+                      int64_t(window.min.x) - corner.x,
+                      int64_t(window.min.y) - corner.y};
     const Imf::ChannelList& list = file.header().channels();
     for (auto one = list.begin(); one != list.end(); ++one) {
         if (one.channel().xSampling != 1 || one.channel().ySampling != 1)
@@ -127,11 +155,13 @@ static Result<Channels> read_all(Imf::InputFile& file) {
     return channels;
 }
 
-Result<Channels> read_exr(const std::filesystem::path& path) {
+Result<Channels> read_exr(std::string_view bytes) {
     try {
-        if (const int parts = Imf::MultiPartInputFile(path.c_str()).parts(); parts > 1)
+        BytesStream stream(bytes);
+        if (const int parts = Imf::MultiPartInputFile(stream).parts(); parts > 1)
             return Error{fmt::format("found an OpenEXR picture of {} parts, expected one", parts)};
-        Imf::InputFile file(path.c_str());
+        stream.seekg(0);
+        Imf::InputFile file(stream);
         return read_all(file);
     } catch (const std::exception& e) {
         return Error{fmt::format("found a damaged OpenEXR picture: {}", e.what())};

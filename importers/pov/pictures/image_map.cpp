@@ -99,6 +99,15 @@ struct MapWords {
     }
 };
 
+/// Returns whether texels are blended.
+bool parse_interpolation(Reader& reader, const Place& place) {
+    const double kind = parse_float(reader);
+    if (kind == 3 || kind == 4)
+        reader.omit("interpolate", place,
+                    fmt::format("interpolate {} of a picture is read as interpolate 2", kind));
+    return kind > 0;
+}
+
 /// Reads the words up to the end of the block, or up to the textures of a material_map.
 MapWords parse_map_words(Reader& reader, std::string_view block) {
     MapWords words;
@@ -108,6 +117,7 @@ MapWords parse_map_words(Reader& reader, std::string_view block) {
         return of_materials && (token.is("texture") || named<Texture>(reader, token));
     };
     while (!is_texture() && (of_materials ? !reader.peek().is('}') : !reader.take('}'))) {
+        const Token word = reader.peek();
         if (reader.take("filter"))
             parse_through(reader, words.transparency, &MapTransparency::Share::filter);
         else if (reader.take("transmit"))
@@ -115,7 +125,7 @@ MapWords parse_map_words(Reader& reader, std::string_view block) {
         else if (reader.take("once"))
             words.transparency.once = true;
         else if (reader.take("interpolate"))
-            words.smooth = parse_float(reader) > 0;
+            words.smooth = parse_interpolation(reader, word.place);
         else if (reader.take("map_type"))
             words.type = int(parse_float(reader));
         else if (reader.take("bump_size"))
@@ -128,7 +138,7 @@ MapWords parse_map_words(Reader& reader, std::string_view block) {
             words.use_index = words.use_alpha = false;
         else if (block == "image_pattern" && reader.take("use_alpha"))
             words.use_alpha = true;
-        else if (const Token word = reader.peek(); reader.take("premultiplied")) {
+        else if (reader.take("premultiplied")) {
             if (parse_flag(reader))
                 reader.omit("premultiplied", word.place, "premultiplied of a picture is left out");
         } else if (!reader.take(','))

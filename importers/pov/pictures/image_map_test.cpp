@@ -3,6 +3,8 @@
 #include "importers/png.h"
 #include "importers/test_files.h"
 
+#include <gmock/gmock.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -83,6 +85,11 @@ TEST(PovImageMap, WordsChangeHowItIsShown) {
     EXPECT_EQ(read_map("").image().beyond_s, Beyond::Repeat);
     EXPECT_EQ(read_map("").image().gamma, 0);
     EXPECT_EQ(read_map("interpolate 2").image().filter, TexelFilter::Smooth);
+    EXPECT_TRUE(read_map("interpolate 2").warnings.empty());
+    const ReadPov by_distance = read_map("interpolate 4");
+    EXPECT_EQ(by_distance.image().filter, TexelFilter::Smooth);
+    EXPECT_THAT(by_distance.warnings,
+                testing::Contains(testing::HasSubstr("interpolate 4 of a picture is read as")));
     EXPECT_EQ(read_map("once map_type 1").image().beyond_t, Beyond::Nothing);
     const ReadPov clear = read_map("filter all 0.25 transmit all 0.5 map_type 1");
     EXPECT_EQ(clear.image().filter_all, 0.25f);
