@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Turns numbers of leaves into colours, and colours into a PNG file.
+// Turns numbers of leaves into colors, and colors into a PNG file.
 #include "host/output/leaf_patches.h"
 
 #include "host/diff/channels.h"
@@ -20,7 +20,7 @@ namespace {
 constexpr float kNothing = 0.55f; // readable on light ground and on dark
 constexpr uint32_t kNoLeaf = 0xffffffff;
 
-/// Returns the colour of a hue from 0 to 1, with little white in it.
+/// Returns the color of a hue from 0 to 1, with little white in it.
 PatchColor from_hue(double hue) {
     const auto channel = [&](double shift) {
         const double x = std::abs(std::fmod(hue + shift, 1.0) * 6 - 3) - 1;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests the colours of leaves and files that cannot be read.
+// Tests the colors of leaves and files that cannot be read.
 #include "host/output/leaf_patches.h"
 
 #include <gmock/gmock.h>

@@ -25,7 +25,7 @@ static constexpr Experiment kExperiments[] = {
     {"programs", "whole programs from file to picture, beside povray and tachyon; the bars",
      programs_runs},
     {"thesis", "the figures of the thesis, in each of its systems and ours", thesis_runs},
-    {"pictures", "the scenes of the thesis, and leaves of level 1 in colours", pictures_runs}};
+    {"pictures", "the scenes of the thesis, and leaves of level 1 in colors", pictures_runs}};
 
 std::span<const Experiment> experiments() {
     return kExperiments;

@@ -142,7 +142,7 @@ def read_ppm(path):
 
 
 def differing(plain, ours):
-    """Returns (x, y, tachyon's colour, our colour) of every pixel that is not the same."""
+    """Returns (x, y, tachyon's color, our color) of every pixel that is not the same."""
     (width, a), (_, b) = read_ppm(plain), read_ppm(ours)
     if len(a) != len(b):
         sys.exit(f"compare.py: {plain} and {ours} differ in size")
