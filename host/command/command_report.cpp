@@ -373,7 +373,8 @@ public:
                        "Instead of the scenes of the page's experiments; may come several times")
             ->type_name("SCENE");
         app.add_option("--size", given_.size,
-                       "Instead of the size of the page's pictures and measurements")
+                       "Instead of the size of the page's pictures and measurements; squares "
+                       "have its height")
             ->type_name("WxH");
         app.add_option("--times", given_.times,
                        "For stability: so many times the rays of the short form; default: 10")

@@ -13,6 +13,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <fstream>
 #include <iterator>
 
@@ -237,13 +238,22 @@ private:
     size_t runs_ = 0, runs_done_ = 0;
 };
 
+/// Tables of `overcast bench` that draw squares, of the height that is asked for.
+bool draws_squares(const ReportRun& run) {
+    return std::ranges::any_of(run.words, [](const std::string& word) {
+        return word == "--pictures" || word == "--programs" || word == "--bars";
+    });
+}
+
 std::vector<ReportRun> runs_of(const Experiment& experiment, const ReportPlan& plan) {
     std::vector<ReportRun> runs = experiment.runs(plan);
-    if (!plan.size.empty())
-        for (ReportRun& run : runs)
-            for (size_t i = 1; i < run.words.size(); ++i)
-                if (run.words[i - 1] == "--size")
-                    run.words[i] = plan.size;
+    if (plan.size.empty())
+        return runs;
+    const std::string height = plan.size.substr(plan.size.find('x') + 1);
+    for (ReportRun& run : runs)
+        for (size_t i = 1; i < run.words.size(); ++i)
+            if (run.words[i - 1] == "--size")
+                run.words[i] = draws_squares(run) ? height + "x" + height : plan.size;
     return runs;
 }
 

@@ -40,11 +40,11 @@ protected:
     /// Returns the troubles.
     std::vector<std::string> run(
         const std::function<bool()>& stop = [] { return false; },
-        const std::string& build = "a build") const {
+        const std::string& build = "a build", const ReportPlan& plan = {}) const {
         const Experiment experiment{"scripts", "shell scripts",
                                     [](const ReportPlan&) { return scripts; }};
         const auto troubles =
-            run_experiments(std::span(&experiment, 1), "", {},
+            run_experiments(std::span(&experiment, 1), "", plan,
                             {"sh", build, scratch.path(), stop, [](const std::string&) {}});
         EXPECT_TRUE(troubles);
         return *troubles;
@@ -102,6 +102,16 @@ TEST_F(RunExperiments, SayWhatFailedAndGoOn) {
     EXPECT_TRUE(file()["runs"][0]["result"].is_null());
     EXPECT_EQ(file()["runs"][2]["result"]["refused"], "too large");
     EXPECT_EQ(file()["runs"][3]["result"]["n"], 3);
+}
+
+TEST_F(RunExperiments, TakeTheSizeThatIsAskedForAndItsHeightForSquares) {
+    for (const char* table : {"--sweep", "--pictures"}) {
+        ReportRun& run = add(table, "echo \"{\\\"size\\\": \\\"$3\\\"}\" > $0/result.json");
+        run.words.insert(run.words.end(), {table, "--size", "9x9"});
+    }
+    EXPECT_TRUE(run([] { return false; }, "a build", {.size = "64x40"}).empty());
+    EXPECT_EQ(file()["runs"][0]["result"]["size"], "64x40");
+    EXPECT_EQ(file()["runs"][1]["result"]["size"], "40x40");
 }
 
 /// Commands that find wrong answers write their figures all the same.
