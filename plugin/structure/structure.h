@@ -75,9 +75,8 @@ public:
         return false;
     }
     /// Answer rays on the CPU: with the same bits as intersect() and occluded(), from any thread
-    /// and beside all other calls; on all cores where there are more than kMaxFewRays. Add to
-    /// `invalid` how many are. Return false, having done nothing, where the kernel is to answer
-    /// them.
+    /// and beside all other calls; hundreds of them on all cores. Add to `invalid` how many are.
+    /// Return false, having done nothing, where the kernel is to answer them.
     virtual bool intersect_few(RaySpan, const Exclusions&, std::span<Hit>,
                                [[maybe_unused]] uint64_t& invalid) const {
         return false;

@@ -150,18 +150,12 @@ bool TwoLevel::answer_few(const Query& query, uint64_t& invalid) const {
     if (!has_cpu_tree() || !options_.certify || options_.tell_active ||
         !query.without.sieves.pass_all())
         return false;
-    if (count <= kMaxFewRays) {
-        invalid += answer_group(query);
-        return true;
-    }
-    if (options_.kernel_alone || !was_all_resident_)
+    if (count > kMaxFewRays && (options_.kernel_alone || !was_all_resident_))
         return false;
     std::atomic<uint64_t> invalid_of_all{0};
-    const size_t groups = (count + kMaxFewRays - 1) / kMaxFewRays;
-    parallel_for(groups, 1, [&](size_t first, size_t last) {
-        for (size_t at = first * kMaxFewRays; at < std::min(last * kMaxFewRays, count);
-             at += kMaxFewRays)
-            invalid_of_all += answer_group(query.part(at, std::min(kMaxFewRays, count - at)));
+    parallel_for(count, kRaysPerTask, [&](size_t first, size_t last) {
+        for (; first < last; first += kMaxFewRays)
+            invalid_of_all += answer_group(query.part(first, std::min(kMaxFewRays, last - first)));
     });
     invalid += invalid_of_all;
     return true;
