@@ -187,6 +187,39 @@ TEST_F(Calls, SmallBatchesAreAnsweredAsLargeOnesAre) {
     }
 }
 
+/// Asks until trials have sent some batches both ways: those of the kernel have a pass each.
+TEST_F(Calls, SmallBatchesHaveTheSameBitsWhicheverWayTheyGo) {
+    constexpr size_t kRays = 500; // of a batch
+    const Soup soup = test::closed_grid(40);
+    const auto scene = committed(soup);
+    const auto rays = test::unpleasant_rays(soup, 22, 8 * kRays);
+    const auto expected = nearest(scene, rays);
+    const auto expected_shadows = occlusion(scene, rays);
+    std::atomic<size_t> wrong{0};
+    const auto ask = [&](size_t k) {
+        const size_t at = k / 2 % 8 * kRays;
+        std::vector<ovc_hit> hits(kRays);
+        std::vector<uint8_t> shadows(kRays, 2);
+        wrong +=
+            (k % 2 ? api().occluded(scene.get(), as_abi(rays) + at, kRays, shadows.data(), nullptr)
+                   : api().intersect(scene.get(), as_abi(rays) + at, kRays, hits.data(),
+                                     nullptr)) != OVC_OK;
+        wrong += k % 2 ? std::memcmp(shadows.data(), &expected_shadows[at], kRays) != 0
+                       : std::memcmp(hits.data(), &expected[at], kRays * sizeof(ovc_hit)) != 0;
+    };
+    const uint64_t passes = test::statistics(scene).passes;
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(30);
+    uint64_t asked = 0, by_kernel = 0;
+    while (asked < by_kernel + 20 && std::chrono::steady_clock::now() < end) {
+        ask(asked++);
+        by_kernel = test::statistics(scene).passes - passes;
+    }
+    EXPECT_GE(asked, by_kernel + 20);
+    EXPECT_GT(by_kernel, 60u) << "the first are the kernel's";
+    on_threads(8, 400, ask);
+    EXPECT_EQ(wrong, 0u);
+}
+
 /// A call that has the scene's turn, and keeps it as long as this lives, or for ten seconds.
 class LongCall {
 public:
