@@ -126,25 +126,24 @@ Result<Parsed> parse_arguments(CLI::App& app, std::vector<std::string> arguments
     }
 }
 
-Result<uint64_t> parse_count(std::string_view option, std::string_view text, uint64_t least,
-                             uint64_t most) {
+Result<uint64_t> parse_count(std::string_view option, std::string_view text, uint64_t min,
+                             uint64_t max) {
     uint64_t value = 0;
     const char* end = text.data() + text.size();
     const auto [stop, failure] = std::from_chars(text.data(), end, value);
-    if (failure != std::errc{} || stop != end || value < least || value > most)
-        return Error{fmt::format("{} needs a whole number from {} to {}, not '{}'", option, least,
-                                 most, text)};
+    if (failure != std::errc{} || stop != end || value < min || value > max)
+        return Error{
+            fmt::format("{} needs a whole number from {} to {}, not '{}'", option, min, max, text)};
     return value;
 }
 
-Result<double> parse_real(std::string_view option, std::string_view text, double least,
-                          double most) {
+Result<double> parse_real(std::string_view option, std::string_view text, double min, double max) {
     double value = 0;
     const char* end = text.data() + text.size();
     const auto [stop, failure] = std::from_chars(text.data(), end, value);
-    if (failure != std::errc{} || stop != end || !(value >= least && value <= most))
+    if (failure != std::errc{} || stop != end || !(value >= min && value <= max))
         return Error{
-            fmt::format("{} needs a number from {} to {}, not '{}'", option, least, most, text)};
+            fmt::format("{} needs a number from {} to {}, not '{}'", option, min, max, text)};
     return value;
 }
 

@@ -12,6 +12,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace ovc {
@@ -22,13 +23,12 @@ enum class Parsed { Run, HelpShown };
 /// Error: one sentence, with the nearest option that there is.
 Result<Parsed> parse_arguments(CLI::App& app, std::vector<std::string> arguments);
 
-/// Returns `text` as a whole number from least to most. option: its name in the error.
-Result<uint64_t> parse_count(std::string_view option, std::string_view text, uint64_t least,
-                             uint64_t most);
+/// Returns `text` as a whole number from min to max. option: its name in the error.
+Result<uint64_t> parse_count(std::string_view option, std::string_view text, uint64_t min,
+                             uint64_t max);
 
-/// Returns `text` as a number from least to most. NaN is an error. option: its name in the error.
-Result<double> parse_real(std::string_view option, std::string_view text, double least,
-                          double most);
+/// Returns `text` as a number from min to max. NaN is an error. option: its name in the error.
+Result<double> parse_real(std::string_view option, std::string_view text, double min, double max);
 
 /// Returns the index of `text` in `names`, which are not empty; 0, the default, for an empty text.
 Result<size_t> parse_choice(std::string_view option, std::string_view text,
@@ -46,5 +46,43 @@ Result<Camera> parse_camera(std::string_view what, std::string_view text);
 
 /// Parses "x,y,z", each finite and of at most kFarthest in size.
 Result<dvec3> parse_position(std::string_view option, std::string_view text);
+
+/// Reads options one after the other. A variable keeps its value where its option's text is empty:
+/// the user did not give the option. The first error counts, and nothing is read after it.
+class OptionReader {
+public:
+    /// parse(option, text) returns a Result of what `to` is made from.
+    template <class To, class Parse>
+    void read(std::string_view option, std::string_view text, To& to, Parse&& parse) {
+        if (!done_ || text.empty())
+            return;
+        if (auto value = parse(option, text))
+            to = To(std::move(*value));
+        else
+            done_ = value.error();
+    }
+    template <class To>
+    void count(std::string_view option, std::string_view text, uint64_t min, uint64_t max, To& to) {
+        read(option, text, to,
+             [&](auto name, auto word) { return parse_count(name, word, min, max); });
+    }
+    template <class To>
+    void real(std::string_view option, std::string_view text, double min, double max, To& to) {
+        read(option, text, to,
+             [&](auto name, auto word) { return parse_real(name, word, min, max); });
+    }
+    /// names: in the order of `to`, an enumeration whose first value is 0.
+    template <class To>
+    void choice(std::string_view option, std::string_view text,
+                std::span<const std::string_view> names, To& to) {
+        read(option, text, to,
+             [&](auto name, auto word) { return parse_choice(name, word, names); });
+    }
+
+    const Result<Done>& done() const { return done_; }
+
+private:
+    Result<Done> done_ = Done{};
+};
 
 } // namespace ovc

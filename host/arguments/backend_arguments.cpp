@@ -151,13 +151,9 @@ Result<Done> BackendArguments::resolve_ranks(BackendOptions& options) const {
     if (!own)
         return own.error();
     options.ranks_own = *own;
-    if (rank_timeout.empty())
-        return Done{};
-    const Result<double> seconds = parse_real("--rank-timeout", rank_timeout, 0.1, 1e6);
-    if (!seconds)
-        return seconds.error();
-    options.rank_timeout = *seconds;
-    return check_ranks("--rank-timeout", rank_timeout);
+    OptionReader reader;
+    reader.real("--rank-timeout", rank_timeout, 0.1, 1e6, options.rank_timeout);
+    return reader.done() ? check_ranks("--rank-timeout", rank_timeout) : reader.done();
 }
 
 Result<BackendOptions> BackendArguments::resolve() const {
@@ -174,45 +170,20 @@ Result<BackendOptions> BackendArguments::resolve() const {
             return Error{"--gpu-memory: " + size.error().message};
         options.gpu_memory = *size;
     }
-    if (!host_memory.empty()) {
-        const Result<uint64_t> bytes = parse_bytes("--host-memory", host_memory);
-        if (!bytes)
-            return bytes.error();
-        options.host_bytes = *bytes;
-    }
-    if (!leaf_triangles.empty()) {
-        const Result<uint64_t> count =
-            parse_count("--leaf-triangles", leaf_triangles, 1, 0xffffffffu);
-        if (!count)
-            return count.error();
-        options.leaf_triangles = *count;
-    }
-    if (!leaves.empty()) {
-        const Result<uint64_t> count = parse_count("--leaves", leaves, 1, 1000000);
-        if (!count)
-            return count.error();
-        options.leaves = uint32_t(*count);
-    }
+    OptionReader reader;
+    reader.read("--host-memory", host_memory, options.host_bytes, parse_bytes);
+    reader.count("--leaf-triangles", leaf_triangles, 1, 0xffffffffu, options.leaf_triangles);
+    reader.count("--leaves", leaves, 1, 1000000, options.leaves);
+    reader.choice("--precision", precision, kPrecisions, options.precision);
+    reader.choice("--kernel", kernel, kKernels, options.kernel);
+    reader.choice("--level1", level1, kLevels1, options.level1);
+    reader.choice("--level1-build", level1_build, kLevel1Builds, options.level1_build);
+    if (!reader.done())
+        return reader.done().error();
     options.device = device;
-    const Result<size_t> precision_choice = parse_choice("--precision", precision, kPrecisions);
-    if (!precision_choice)
-        return precision_choice.error();
-    options.precision = ovc_precision(*precision_choice);
-    const Result<size_t> kernel_choice = parse_choice("--kernel", kernel, kKernels);
-    if (!kernel_choice)
-        return kernel_choice.error();
-    options.kernel = ovc_kernel(*kernel_choice);
     options.kernel_variant = kernel_variant;
     if (const Result<Done> fine = resolve_ranks(options); !fine)
         return fine.error();
-    const Result<size_t> level1_choice = parse_choice("--level1", level1, kLevels1);
-    if (!level1_choice)
-        return level1_choice.error();
-    options.level1 = ovc_level1(*level1_choice);
-    const Result<size_t> build_choice = parse_choice("--level1-build", level1_build, kLevel1Builds);
-    if (!build_choice)
-        return build_choice.error();
-    options.level1_build = ovc_level1_build(*build_choice);
     return options;
 }
 

@@ -117,60 +117,30 @@ void FilmArguments::add_to(CLI::App& app) {
 
 Result<Done> FilmArguments::resolve_antialias(RenderJob& job) const {
     Antialias how;
-    if (!antialias_method_.empty()) {
-        const Result<size_t> method =
-            parse_choice("--antialias-method", antialias_method_, kAntialiasMethods);
-        if (!method)
-            return method.error();
-        how.method = Antialias::Method(*method + 1);
-    }
-    if (!antialias_depth_.empty()) {
-        const Result<uint64_t> depth =
-            parse_count("--antialias-depth", antialias_depth_, 1, kMaxAntialiasDepth);
-        if (!depth)
-            return depth.error();
-        how.depth = uint32_t(*depth);
-    }
-    if (!jitter_.empty()) {
-        const Result<double> jitter = parse_real("--jitter", jitter_, 0, 1);
-        if (!jitter)
-            return jitter.error();
-        how.jitter = float(*jitter);
-    }
-    if (antialias_.empty()) // as with POV-Ray, whose files may have the others without it
-        return Done{};
+    size_t method = size_t(how.method) - 1;
+    OptionReader options;
+    options.choice("--antialias-method", antialias_method_, kAntialiasMethods, method);
+    options.count("--antialias-depth", antialias_depth_, 1, kMaxAntialiasDepth, how.depth);
+    options.real("--jitter", jitter_, 0, 1, how.jitter);
+    // As with POV-Ray, whose files may have the others without it.
+    if (!options.done() || antialias_.empty())
+        return options.done();
     if (!samples_.empty())
         return Error{"--samples and --antialias cannot be given together"};
-    const Result<double> threshold = parse_real("--antialias", antialias_, 0, 3);
-    if (!threshold)
-        return threshold.error();
-    how.threshold = float(*threshold);
+    options.real("--antialias", antialias_, 0, 3, how.threshold);
+    how.method = Antialias::Method(method + 1);
     job.render.antialias = how;
-    return Done{};
+    return options.done();
 }
 
 Result<Done> FilmArguments::resolve_samples(RenderJob& job) const {
-    if (!samples_.empty()) {
-        const Result<uint64_t> samples = parse_count("--samples", samples_, 1, kMaxSamples);
-        if (!samples)
-            return samples.error();
-        job.samples = uint32_t(*samples);
-    }
-    if (!seed_.empty()) {
-        const Result<uint64_t> seed = parse_count("--seed", seed_, 0, ~uint64_t(0));
-        if (!seed)
-            return seed.error();
-        job.render.seed = *seed;
-    }
-    if (clamp_.empty())
-        return Done{};
-    const Result<double> clamp = parse_real("--clamp", clamp_, 1e-6, 1e6);
-    if (!clamp)
-        return clamp.error();
-    if (job.render.integrator != IntegratorKind::Path)
+    OptionReader options;
+    options.count("--samples", samples_, 1, kMaxSamples, job.samples);
+    options.count("--seed", seed_, 0, ~uint64_t(0), job.render.seed);
+    options.real("--clamp", clamp_, 1e-6, 1e6, job.render.clamp);
+    if (options.done() && !clamp_.empty() && job.render.integrator != IntegratorKind::Path)
         return Error{"--clamp is for --integrator path alone: whitted has no bright dots"};
-    job.render.clamp = float(*clamp);
-    return Done{};
+    return options.done();
 }
 
 /// Parses a time such as "90", "90s", "1.5m" or "2h", in seconds.
@@ -191,18 +161,11 @@ Result<Done> FilmArguments::resolve_passes(RenderJob& job) const {
         return Done{};
     const char* const option = time_.empty() ? "--noise" : "--time";
     Progressive progressive;
-    if (!time_.empty()) {
-        const Result<double> seconds = parse_time("--time", time_);
-        if (!seconds)
-            return seconds.error();
-        progressive.seconds = *seconds;
-    }
-    if (!noise_.empty()) {
-        const Result<double> noise = parse_real("--noise", noise_, 1e-5, 1);
-        if (!noise)
-            return noise.error();
-        progressive.noise = *noise;
-    }
+    OptionReader options;
+    options.read("--time", time_, progressive.seconds, parse_time);
+    options.real("--noise", noise_, 1e-5, 1, progressive.noise);
+    if (!options.done())
+        return options.done();
     if (job.render.antialias)
         return Error{fmt::format("{} and --antialias cannot be given together", option)};
     if (job.go_on && job.shots.empty()) // of a sequence, the frames that are there stay
@@ -225,18 +188,13 @@ static bool has_samples(const RenderJob& job) {
 Result<Done> FilmArguments::resolve_filter(RenderJob& job) const {
     if (filter_.empty() && filter_radius_.empty())
         return Done{};
-    const Result<size_t> kind = parse_choice("--filter", filter_, kFilters);
-    if (!kind)
-        return kind.error();
-    FilterOptions filter{FilterOptions::Kind(*kind)};
+    FilterOptions filter;
+    OptionReader options;
+    options.choice("--filter", filter_, kFilters, filter.kind);
     filter.radius = default_radius(filter.kind);
-    if (!filter_radius_.empty()) {
-        const Result<double> radius =
-            parse_real("--filter-radius", filter_radius_, 0.01, kMaxFilterRadius);
-        if (!radius)
-            return radius.error();
-        filter.radius = *radius;
-    }
+    options.real("--filter-radius", filter_radius_, 0.01, kMaxFilterRadius, filter.radius);
+    if (!options.done())
+        return options.done();
     if (filter != FilterOptions{} && !has_samples(job))
         return Error{"--filter needs --samples of at least 2: it weighs the rays of a pixel"};
     job.render.filter = filter;
@@ -246,19 +204,12 @@ Result<Done> FilmArguments::resolve_filter(RenderJob& job) const {
 Result<Done> FilmArguments::resolve_lens(RenderJob& job) const {
     if (lens_radius_.empty())
         return focus_.empty() ? Result<Done>(Done{}) : Error{"--focus needs --lens-radius"};
-    const Result<double> radius = parse_real("--lens-radius", lens_radius_, 0, kFarthest);
-    if (!radius)
-        return radius.error();
-    if (!focus_.empty()) {
-        const Result<double> focus = parse_real("--focus", focus_, 1e-30, kFarthest);
-        if (!focus)
-            return focus.error();
-        job.focus = *focus;
-    }
-    if (*radius > 0 && !has_samples(job))
+    OptionReader options;
+    options.real("--lens-radius", lens_radius_, 0, kFarthest, job.lens_radius);
+    options.real("--focus", focus_, 1e-30, kFarthest, job.focus);
+    if (options.done() && job.lens_radius > 0 && !has_samples(job))
         return Error{"--lens-radius needs --samples of at least 2: one ray sees no blur"};
-    job.lens_radius = *radius;
-    return Done{};
+    return options.done();
 }
 
 Result<Done> FilmArguments::resolve_tones(RenderJob& job) const {
@@ -279,17 +230,14 @@ Result<Done> FilmArguments::resolve_tones(RenderJob& job) const {
     if (view_ && Ranks::are_there())
         return Error{"--view is for one process, and not for mpirun"};
     job.view = view_;
-    const Result<size_t> curve = parse_choice("--tone-map", tone_map_, kToneMaps);
-    if (!curve)
-        return curve.error();
-    job.development.tone_map = ToneMap(*curve);
     if (job.render.progressive)
         job.render.progressive->exposure = job.development.exposure;
-    const Result<size_t> bits = parse_choice("--png-bits", png_bits_, kPngBits);
-    if (!bits)
-        return bits.error();
-    job.png_bits = *bits == 0 ? 8 : 16;
-    return Done{};
+    size_t bits = 0;
+    OptionReader options;
+    options.choice("--tone-map", tone_map_, kToneMaps, job.development.tone_map);
+    options.choice("--png-bits", png_bits_, kPngBits, bits);
+    job.png_bits = bits == 0 ? 8 : 16;
+    return options.done();
 }
 
 Result<Done> FilmArguments::resolve(RenderJob& job) const {

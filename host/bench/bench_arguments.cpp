@@ -432,18 +432,12 @@ Result<BenchJob> understand_bench(const BenchWords& words) {
                                  size_words)};
     if (job.kind == BenchKind::Pictures)
         job.most = kDefaultSamples;
-    const Result<uint64_t> repeats = parse_count("--repeats", words.repeats, 1, 1000);
-    if (!repeats)
-        return repeats.error();
-    job.repeats = uint32_t(*repeats);
-    if (!words.most.empty()) {
-        const Result<uint64_t> most =
-            parse_count("--most", words.most, 1,
-                        job.kind == BenchKind::Pictures ? kMaxPictureSamples : 1'000'000'000);
-        if (!most)
-            return most.error();
-        job.most = *most;
-    }
+    OptionReader options;
+    options.count("--repeats", words.repeats, 1, 1000, job.repeats);
+    options.count("--most", words.most, 1,
+                  job.kind == BenchKind::Pictures ? kMaxPictureSamples : 1'000'000'000, job.most);
+    if (!options.done())
+        return options.done().error();
     Result<std::vector<std::string>> workloads = workloads_of(words.workloads);
     if (!workloads)
         return workloads.error();

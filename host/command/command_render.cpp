@@ -19,7 +19,6 @@
 #include <filesystem>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <functional>
 #include <unistd.h>
 
 namespace ovc {
@@ -212,20 +211,21 @@ void RenderWords::add_to(CLI::App& app) {
 }
 
 /// Parses a crop such as "320x240+100+50".
-static Result<Crop> parse_crop(std::string_view text) {
+static Result<Crop> parse_crop(std::string_view option, std::string_view text) {
     const size_t left = std::min(text.find('+'), text.size());
     const size_t top = std::min(text.find('+', left + 1), text.size());
     if (top == text.size())
-        return Error{
-            fmt::format("--crop needs WIDTHxHEIGHT+X+Y, such as 320x240+100+50, not '{}'", text)};
-    const Result<ImageSize> size = parse_size("--crop", text.substr(0, left));
+        return Error{fmt::format("{} needs WIDTHxHEIGHT+X+Y, such as 320x240+100+50, not '{}'",
+                                 option, text)};
+    const Result<ImageSize> size = parse_size(option, text.substr(0, left));
     if (!size)
         return size.error();
-    const Result<uint64_t> x =
-        parse_count("X in --crop", text.substr(left + 1, top - left - 1), 0, 65534);
+    const Result<uint64_t> x = parse_count(fmt::format("X in {}", option),
+                                           text.substr(left + 1, top - left - 1), 0, 65534);
     if (!x)
         return x.error();
-    const Result<uint64_t> y = parse_count("Y in --crop", text.substr(top + 1), 0, 65534);
+    const Result<uint64_t> y =
+        parse_count(fmt::format("Y in {}", option), text.substr(top + 1), 0, 65534);
     if (!y)
         return y.error();
     return Crop{uint32_t(*x), uint32_t(*y), *size};
@@ -321,33 +321,15 @@ static Result<Done> check_outputs(const RenderWords& words, const RenderJob& job
 }
 
 static Result<Done> understand_view(const RenderWords& words, RenderJob& job) {
-    if (!words.size.empty()) {
-        const Result<ImageSize> size = parse_size("--size", words.size);
-        if (!size)
-            return size.error();
-        job.size = *size;
-    }
-    if (!words.crop.empty()) {
-        const Result<Crop> crop = parse_crop(words.crop);
-        if (!crop)
-            return crop.error();
-        job.crop = *crop;
-    }
-    if (!words.camera.empty()) {
-        const Result<Camera> camera = parse_camera("--camera", words.camera);
-        if (!camera)
-            return camera.error();
-        job.camera = *camera;
-    }
-    if (!words.up.empty()) {
-        const Result<size_t> axis = parse_choice("--up", words.up, kAxes);
-        if (!axis)
-            return axis.error();
-        if (!job.shots.empty() && job.shots[0].camera)
-            return Error{"--up and a camera path cannot be given together: its cameras say what is "
-                         "up"};
-        job.up = int(*axis);
-    }
+    OptionReader options;
+    options.read("--size", words.size, job.size, parse_size);
+    options.read("--crop", words.crop, job.crop, parse_crop);
+    options.read("--camera", words.camera, job.camera, parse_camera);
+    options.choice("--up", words.up, kAxes, job.up);
+    if (!options.done())
+        return options.done();
+    if (job.up && !job.shots.empty() && job.shots[0].camera)
+        return Error{"--up and a camera path cannot be given together: its cameras say what is up"};
     for (const std::string& light : words.lights) {
         const Result<dvec3> position = parse_position("--light", light);
         if (!position)
@@ -357,63 +339,26 @@ static Result<Done> understand_view(const RenderWords& words, RenderJob& job) {
     return Done{};
 }
 
-static Result<Done> understand_counts(const RenderWords& words, RenderJob& job) {
-    struct Wanted {
-        std::string_view option;
-        const std::string& text; // empty: not given
-        uint64_t least, most;
-        std::function<void(uint64_t)> take;
-    };
-    const Wanted all[] = {{"--threads", words.threads, 1, kMaxThreads,
-                           [&](uint64_t threads) { job.threads = uint32_t(threads); }},
-                          {"--max-depth", words.max_depth, 0, kMaxDepth,
-                           [&](uint64_t depth) { job.max_depth = uint32_t(depth); }}};
-    for (const Wanted& wanted : all) {
-        if (wanted.text.empty())
-            continue;
-        const Result<uint64_t> count =
-            parse_count(wanted.option, wanted.text, wanted.least, wanted.most);
-        if (!count)
-            return count.error();
-        wanted.take(*count);
-    }
-    return Done{};
-}
-
 static Result<Done> understand_saving(const RenderWords& words, RenderJob& job) {
-    if (words.save_every.empty())
-        return Done{};
-    const Result<double> seconds = parse_real("--save-every", words.save_every, 0, 1e6);
-    if (!seconds)
-        return seconds.error();
-    job.render.keep_seconds = *seconds;
-    return check_ranks("--save-every", words.save_every);
+    OptionReader options;
+    options.real("--save-every", words.save_every, 0, 1e6, job.render.keep_seconds);
+    return options.done() ? check_ranks("--save-every", words.save_every) : options.done();
 }
 
 static Result<Done> understand_shading(const RenderWords& words, RenderJob& job) {
-    if (const Result<Done> fine = understand_counts(words, job); !fine)
-        return fine;
-    const Result<size_t> mode = parse_choice("--mode", words.mode, kModes);
-    if (!mode)
-        return mode.error();
-    job.render.mode = RenderMode(*mode);
-    const Result<size_t> integrator = parse_choice("--integrator", words.integrator, kIntegrators);
-    if (!integrator)
-        return integrator.error();
-    job.render.integrator = IntegratorKind(*integrator);
-    if (const Result<Done> fine = words.film.resolve(job); !fine)
-        return fine;
+    OptionReader options;
+    options.count("--threads", words.threads, 1, kMaxThreads, job.threads);
+    options.count("--max-depth", words.max_depth, 0, kMaxDepth, job.max_depth);
+    options.choice("--mode", words.mode, kModes, job.render.mode);
+    options.choice("--integrator", words.integrator, kIntegrators, job.render.integrator);
+    options.read("--texture-memory", words.texture_memory, job.texture_memory, parse_bytes);
+    if (!options.done())
+        return options.done();
     job.render.shadows = !words.no_shadows;
     job.render.cutouts = !words.no_cutouts;
-    if (!words.texture_memory.empty()) {
-        const Result<uint64_t> bytes = parse_bytes("--texture-memory", words.texture_memory);
-        if (!bytes)
-            return bytes.error();
-        job.texture_memory = *bytes;
-    }
     if (isatty(STDERR_FILENO))
         job.render.batch_rays = kWatchedBatchRays;
-    return Done{};
+    return words.film.resolve(job);
 }
 
 static Result<Done> understand_aovs(const RenderWords& words, RenderJob& job) {

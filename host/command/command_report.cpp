@@ -104,23 +104,16 @@ Result<uint64_t> parse_rays(const std::string& text) {
 Result<StabilityOptions> options_of(const ReportArguments& given) {
     StabilityOptions options;
     options.times = given.quick ? 1 : 10;
-    if (!given.times.empty()) {
-        const Result<uint64_t> times = parse_count("--times", given.times, 1, 1'000'000);
-        if (!times)
-            return times.error();
-        options.times = *times;
-    }
     const Result<BackendKind> kind =
         parse_backend(given.backend.empty() ? "two-level" : given.backend);
     if (!kind)
         return kind.error();
     options.backend.kind = *kind;
     options.backend.device = given.device;
-    const Result<size_t> kernel = parse_choice("--kernel", given.kernel, kKernels);
-    if (!kernel)
-        return kernel.error();
-    options.backend.kernel = ovc_kernel(*kernel);
-    return options;
+    OptionReader reader;
+    reader.count("--times", given.times, 1, 1'000'000, options.times);
+    reader.choice("--kernel", given.kernel, kKernels, options.backend.kernel);
+    return reader.done() ? Result<StabilityOptions>(options) : reader.done().error();
 }
 
 /// The cases and options of one of the tables.
