@@ -219,8 +219,8 @@ dvec3 path_traced(const Scene& scene, Backend& backend, const dvec3& at, const d
     Film film(32, 32, 64);
     const PathTracer tracer(scene, vec3(0, 1, 0), PathTracerOptions{});
     const Pinhole pinhole(camera, film.width(), film.height());
-    const auto done = render_batched(tracer, 1, CameraRays(pinhole, film), Sight(scene), backend,
-                                     size_t(1) << 16, {}, film);
+    const auto done = render_batched({tracer, CameraRays(pinhole, film), Sight(scene), {}, film},
+                                     backend, size_t(1) << 16);
     EXPECT_TRUE(done && done->complete);
     const Image image = film.image();
     dvec3 sum(0);

@@ -68,9 +68,14 @@ public:
 
     /// Finds the light at the points, with that of the bounces before; null: there are none.
     Result<Done> gather(const BouncedLight* before) {
-        // As povray, where a scene does not say `media on` in its radiosity.
-        const Whitted integrator(scene_, up_, options_.max_depth, options_.shadows, before,
-                                 uint32_t(std::max<size_t>(light_stride_, 1)), /* media= */ false);
+        // Media count for nothing as in povray, where a scene does not say `media on` in its
+        // radiosity.
+        const Whitted integrator(scene_, up_,
+                                 {.max_depth = options_.max_depth,
+                                  .shadows = options_.shadows,
+                                  .media = false,
+                                  .bounced = before,
+                                  .light_stride = uint32_t(std::max<size_t>(light_stride_, 1))});
         for (size_t first = 0; first < points_.size(); first += kPointsAtOnce) {
             const size_t count = std::min(kPointsAtOnce, points_.size() - first);
             if (const Result<Done> done = gather(integrator, first, count); !done)
@@ -84,7 +89,7 @@ public:
 private:
     Result<Done> gather(const Whitted& integrator, size_t first, size_t count) {
         Film film(uint32_t(count), 1, uint32_t(rays_a_point_));
-        Shading shading(integrator, max_shadow_rays(scene_), film);
+        Shading shading(integrator, film);
         Spawned waiting;
         for (size_t p = 0; p < count; ++p)
             add_rays(first + p, uint32_t(p), waiting.paths);

@@ -85,8 +85,11 @@ static std::unique_ptr<Integrator> make_integrator(const Scene& scene, const Cam
                                                               .shadows = options.shadows,
                                                               .seed = seed,
                                                               .clamp = options.clamp});
-    return std::make_unique<Whitted>(scene, up, options.max_depth, options.shadows, bounced,
-                                     /* light_stride= */ 1, /* media= */ true, camera.eye);
+    return std::make_unique<Whitted>(scene, up,
+                                     WhittedOptions{.max_depth = options.max_depth,
+                                                    .shadows = options.shadows,
+                                                    .eye = camera.eye,
+                                                    .bounced = bounced});
 }
 
 namespace {
@@ -172,13 +175,12 @@ private:
 
     Result<RenderReport> trace(const Integrator& integrator, const CameraRays& rays,
                                const RenderObserver& observe, Film& film) {
-        const size_t lights = max_shadow_rays(scene_);
+        const RenderTask task{integrator, rays, sight_, observe, film};
         // Where rays visit other ranks, a batch would wait at its end for its last answers.
         const bool as_stream = options_.mode == RenderMode::Mixed ||
                                (options_.ranks && backend_.statistics().ranks > 1);
-        return as_stream ? render_mixed(integrator, lights, rays, sight_, backend_, observe, film)
-                         : render_batched(integrator, lights, rays, sight_, backend_,
-                                          options_.batch_rays, observe, film);
+        return as_stream ? render_mixed(task, backend_)
+                         : render_batched(task, backend_, options_.batch_rays);
     }
 
     std::vector<uint32_t> first_ranks(std::span<const uint32_t> pixels,

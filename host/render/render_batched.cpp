@@ -35,25 +35,20 @@ constexpr double kBusy = 0.75;
 /// every run then. Elsewhere none waits for another's shading.
 class Work {
 public:
-    Work(const CameraRays& camera, const Sight& sight, Backend& backend,
-         const RenderObserver& observe, const Film& film, size_t lanes)
-        : camera_(camera),
-          sight_(sight),
-          backend_(backend),
-          observe_(observe),
-          film_(film),
-          turns_(lanes, backend.moves_pages()) {}
+    Work(const RenderTask& task, Backend& backend, size_t lanes)
+        : task_(task), backend_(backend), turns_(lanes, backend.moves_pages()) {}
 
-    const Sight& sight() const { return sight_; }
+    const RenderTask& task() const { return task_; }
     TurnOrder& turns() { return turns_; }
 
-    /// Makes the next camera rays, at most `most`. Returns false where none are left.
-    bool begin(size_t lane, size_t most, RayList<Path>& paths) {
+    /// Makes the next camera rays, at most `max_count`. Returns false where none are left.
+    bool begin(size_t lane, size_t max_count, RayList<Path>& paths) {
         const uint64_t first =
-            turns_.take(lane, [&] { return std::exchange(begun_, begun_ + most); });
-        if (first >= camera_.size())
+            turns_.take(lane, [&] { return std::exchange(begun_, begun_ + max_count); });
+        const CameraRays& camera = task_.camera;
+        if (first >= camera.size())
             return false;
-        camera_.make(first, std::min<uint64_t>(most, camera_.size() - first), paths);
+        camera.make(first, std::min<uint64_t>(max_count, camera.size() - first), paths);
         return true;
     }
 
@@ -72,8 +67,8 @@ public:
             if (!done)
                 error_ = done.error();
             report_.rays += rays;
-            report_.pixels_done = film_.pixels_done();
-            stopped_ = !done || (observe_ && !observe_(report_));
+            report_.pixels_done = task_.film.pixels_done();
+            stopped_ = !done || (task_.observe && !task_.observe(report_));
             return !stopped_;
         });
     }
@@ -98,11 +93,8 @@ public:
     }
 
 private:
-    const CameraRays& camera_;
-    const Sight& sight_;
+    const RenderTask& task_;
     Backend& backend_;
-    const RenderObserver& observe_;
-    const Film& film_;
     const bool has_cores_ = thread_count() <= kMaxLanes; // one for each lane
     LoopThreads all_threads_{0};                         // also of a backend in this program
     const Stopwatch since_begin_;
@@ -117,12 +109,10 @@ private:
 
 class Lane {
 public:
-    Lane(Work& work, size_t number, const Integrator& integrator, size_t lights, size_t batch_rays,
-         Film& film)
+    Lane(Work& work, size_t number, size_t batch_rays)
         : work_(work),
           number_(number),
-          integrator_(integrator),
-          shading_(integrator, lights, film),
+          shading_(work.task().integrator, work.task().film),
           batch_rays_(batch_rays) {
         spawned_.shadows.reserve(batch_rays);
     }
@@ -172,7 +162,7 @@ private:
             spawned_.shadows.move_tail(
                 spawned_.shadows.size() - std::min(spawned_.shadows.size(), batch_rays_), shadows_);
             while (!shadows_.empty())
-                if (!(integrator_.light_may_pass() ? pass() : arrive()))
+                if (!(work_.task().integrator.light_may_pass() ? pass() : arrive()))
                     return false;
             reuse(shadows_, spawned_.shadows);
         }
@@ -206,7 +196,7 @@ private:
     template <class Purpose>
     Exclusions excluded(const RayList<Purpose>& rays) {
         Exclusions without(rays.skip);
-        without.sieves = work_.sight().of(rays.purposes, masks_);
+        without.sieves = work_.task().sight.of(rays.purposes, masks_);
         return without;
     }
 
@@ -238,7 +228,6 @@ private:
 
     Work& work_;
     const size_t number_;
-    const Integrator& integrator_;
     Shading shading_;
     const size_t batch_rays_;
     LoopThreads own_thread_{1};
@@ -255,17 +244,15 @@ private:
 
 } // namespace
 
-Result<RenderReport> render_batched(const Integrator& integrator, size_t lights,
-                                    const CameraRays& camera, const Sight& sight, Backend& backend,
-                                    size_t batch_rays, const RenderObserver& observe, Film& film) {
+Result<RenderReport> render_batched(const RenderTask& task, Backend& backend, size_t batch_rays) {
     const uint64_t wanted =
-        std::clamp(camera.size() / kMinBatches + 1, kMinRays, kRaysACore * thread_count());
+        std::clamp(task.camera.size() / kMinBatches + 1, kMinRays, kRaysACore * thread_count());
     const size_t batch = size_t(std::min<uint64_t>(batch_rays, wanted));
     const size_t lanes = std::min(kMaxLanes, thread_count());
-    Work work(camera, sight, backend, observe, film, lanes);
+    Work work(task, backend, lanes);
     const auto run = [&](size_t lane) {
         const TurnOrder::Seat seat(work.turns(), lane);
-        Lane(work, lane, integrator, lights, batch, film).run();
+        Lane(work, lane, batch).run();
     };
     std::vector<std::future<void>> others;
     for (size_t lane = 1; lane < lanes; ++lane)

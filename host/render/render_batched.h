@@ -9,11 +9,17 @@
 
 namespace ovc {
 
-/// Renders the camera's rays onto the film. lights: the number of lights, each of which may ask for
-/// a shadow ray at every hit. batch_rays: at least 1. The report lacks `seconds` and
+/// Camera rays, and the film that they are rendered onto.
+struct RenderTask {
+    const Integrator& integrator;
+    const CameraRays& camera;
+    const Sight& sight;
+    const RenderObserver& observe;
+    Film& film;
+};
+
+/// Renders the camera's rays onto the film. batch_rays: at least 1. The report lacks `seconds` and
 /// `seconds_cpu`.
-Result<RenderReport> render_batched(const Integrator& integrator, size_t lights,
-                                    const CameraRays& camera, const Sight& sight, Backend& backend,
-                                    size_t batch_rays, const RenderObserver& observe, Film& film);
+Result<RenderReport> render_batched(const RenderTask& task, Backend& backend, size_t batch_rays);
 
 } // namespace ovc

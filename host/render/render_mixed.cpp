@@ -91,15 +91,12 @@ private:
 
 class MixedRenderer final : public StreamHost {
 public:
-    MixedRenderer(const Integrator& integrator, size_t lights, const CameraRays& camera,
-                  const Sight& sight, const RenderObserver& observe, Film& film)
-        : camera_(camera),
-          observe_(observe),
-          film_(film),
-          shading_(integrator, lights, film),
-          paths_(0, /* any_hit= */ false, /* keeps_rays= */ true, sight),
-          shadows_(1, /* any_hit= */ !integrator.light_may_pass(),
-                   /* keeps_rays= */ integrator.light_may_pass(), sight) {}
+    explicit MixedRenderer(const RenderTask& task)
+        : task_(task),
+          shading_(task.integrator, task.film),
+          paths_(0, /* any_hit= */ false, /* keeps_rays= */ true, task.sight),
+          shadows_(1, /* any_hit= */ !task.integrator.light_may_pass(),
+                   /* keeps_rays= */ task.integrator.light_may_pass(), task.sight) {}
 
     Result<RenderReport> render(Backend& backend) {
         const Stopwatch watch;
@@ -117,8 +114,8 @@ public:
 
     bool more(RayStream& stream, size_t wanted) override {
         const Stopwatch watch;
-        const size_t count = size_t(std::min<uint64_t>(wanted, camera_.size() - begun_));
-        camera_.make(begun_, count, spawned_.paths);
+        const size_t count = size_t(std::min<uint64_t>(wanted, task_.camera.size() - begun_));
+        task_.camera.make(begun_, count, spawned_.paths);
         begun_ += count;
         push_spawned(stream);
         report_.seconds_shade += watch.seconds();
@@ -192,13 +189,11 @@ private:
 
     bool go_on(const Stopwatch& watch) {
         report_.seconds_shade += watch.seconds();
-        report_.pixels_done = film_.pixels_done();
-        return !observe_ || observe_(report_);
+        report_.pixels_done = task_.film.pixels_done();
+        return !task_.observe || task_.observe(report_);
     }
 
-    const CameraRays& camera_;
-    const RenderObserver& observe_;
-    Film& film_;
+    const RenderTask& task_;
     Shading shading_;
     uint64_t begun_ = 0; // camera rays
     RaysUnderWay<Path> paths_;
@@ -214,10 +209,8 @@ private:
 
 } // namespace
 
-Result<RenderReport> render_mixed(const Integrator& integrator, size_t lights,
-                                  const CameraRays& camera, const Sight& sight, Backend& backend,
-                                  const RenderObserver& observe, Film& film) {
-    return MixedRenderer(integrator, lights, camera, sight, observe, film).render(backend);
+Result<RenderReport> render_mixed(const RenderTask& task, Backend& backend) {
+    return MixedRenderer(task).render(backend);
 }
 
 } // namespace ovc

@@ -107,6 +107,9 @@ public:
     virtual void shade(std::span<const Ray> rays, std::span<const Path> paths,
                        std::span<const Hit> hits, Film& film, Spawned& spawned) const = 0;
 
+    /// Returns the max number of shadow rays that an answer spawns.
+    virtual size_t max_shadow_rays() const = 0;
+
     /// Returns whether light may pass some surface. If so, shadow rays look for the nearest surface
     /// and the renderer asks pass(); otherwise any surface in the way blocks the light.
     virtual bool light_may_pass() const = 0;

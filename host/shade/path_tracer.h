@@ -38,6 +38,7 @@ public:
 
     void shade(std::span<const Ray> rays, std::span<const Path> paths, std::span<const Hit> hits,
                Film& film, Spawned& spawned) const override;
+    size_t max_shadow_rays() const override { return 1; }
     bool light_may_pass() const override { return light_may_pass_; }
     bool pass(const Hit& hit, Ray& ray, Shadow& shadow) const override;
 

@@ -78,8 +78,8 @@ Estimate estimate(const Scene& scene, const Camera& camera, uint32_t samples,
     const std::unique_ptr<Backend> backend = make_cpu_backend(scene.soup);
     const Pinhole pinhole(camera, film.width(), film.height());
     const PathTracer tracer(scene, vec3(0, 1, 0), options);
-    const auto report = render_batched(tracer, 1, CameraRays(pinhole, film), Sight(scene), *backend,
-                                       size_t(1) << 16, {}, film);
+    const auto report = render_batched({tracer, CameraRays(pinhole, film), Sight(scene), {}, film},
+                                       *backend, size_t(1) << 16);
     EXPECT_TRUE(report && report->complete);
     const Image image = film.image();
     const double count = double(image.pixels.size());

@@ -19,9 +19,9 @@ static constexpr size_t kMaxAnswers = size_t(1) << 16;
 static constexpr size_t kBlocksAThread = 32;
 static constexpr size_t kMaxSpawned = size_t(1) << 18;
 
-Shading::Shading(const Integrator& integrator, size_t lights, Film& film)
+Shading::Shading(const Integrator& integrator, Film& film)
     : integrator_(integrator),
-      max_answers_(std::clamp(kMaxSpawned / (lights + 2), kBlock,
+      max_answers_(std::clamp(kMaxSpawned / (integrator.max_shadow_rays() + 2), kBlock,
                               std::min(kMaxAnswers, kBlocksAThread * kBlock * thread_count()))),
       film_(film) {}
 

@@ -15,8 +15,7 @@ namespace ovc {
 /// One thread at a time may call it. It keeps its memory between calls.
 class Shading {
 public:
-    /// lights: the max number of shadow rays that an answer spawns.
-    Shading(const Integrator& integrator, size_t lights, Film& film);
+    Shading(const Integrator& integrator, Film& film);
 
     /// Returns how many answers shade() may get at once, so that they spawn a bounded number of
     /// rays.

@@ -147,35 +147,30 @@ void tell_simplifications(const Scene& scene, std::span<const Light> lights,
                         source, scene.exposure));
 }
 
-Whitted::Whitted(const Scene& scene, const vec3& up, uint32_t max_depth, bool shadows,
-                 const BouncedLight* bounced, uint32_t light_stride, bool media,
-                 const std::optional<dvec3>& eye)
+Whitted::Whitted(const Scene& scene, const vec3& up, const WhittedOptions& options)
     : scene_(scene),
       up_(up),
-      max_depth_(max_depth),
-      shadows_(shadows),
-      bounced_(bounced),
-      light_stride_(light_stride),
+      options_(options),
       light_may_pass_(lets_light_through(scene)),
       needs_cones_(needs_cones(scene)),
-      has_media_(media && has_media(scene)),
+      has_media_(options.media && has_media(scene)),
       air_(pointers_to(scene.background.media)),
       media_(1),
       containers_(scene.materials.size()) {
-    assert(max_depth <= UINT16_MAX); // Path::depth counts to it
-    assert(light_stride >= 1);
+    assert(options.max_depth <= UINT16_MAX); // Path::depth counts to it
+    assert(options.light_stride >= 1);
     for (size_t m = 0; has_media_ && m < scene.materials.size(); ++m)
         if (!scene.materials[m].media.empty() && media_.size() <= UINT16_MAX) {
             containers_[m] = uint16_t(media_.size());
             media_.push_back(pointers_to(scene.materials[m].media));
         }
-    if (!eye || media_.size() == 1 || scene.on_disk)
+    if (!options.eye || media_.size() == 1 || scene.on_disk)
         return;
     std::vector<int> times(media_.size()); // that the eye is in each container
     for (uint32_t mesh = 0; mesh < scene.meshes.size(); ++mesh)
         if (const uint32_t material = scene.meshes[mesh].material;
             material < containers_.size() && containers_[material] != 0)
-            times[containers_[material]] += times_around(scene.soup, mesh, *eye);
+            times[containers_[material]] += times_around(scene.soup, mesh, *options.eye);
     for (size_t number = 1; number < times.size(); ++number)
         for (; times[number] > 0; --times[number])
             around_eye_.enter(uint16_t(number));
@@ -200,14 +195,14 @@ void Whitted::shade(std::span<const Ray> rays, std::span<const Path> paths,
             all.emplace_back(scene_, rays[i], path, hits[i], needs_cones_ ? path.cone : Cone());
         follow(rays[i], path, hits[i], met, spawned);
         film.add(met.pixel, met.weight * ambient_light(scene_.background, up_, met.surface));
-        if (bounced_ && scene_.radiosity)
+        if (options_.bounced && scene_.radiosity)
             film.add(met.pixel, met.weight * scene_.radiosity->brightness *
                                     reflected_by_finish(met.surface) *
-                                    bounced_->at(met.surface.position, met.surface.normal));
+                                    options_.bounced->at(met.surface.position, met.surface.normal));
     }
     for (uint32_t light = 0; light < scene_.lights.size(); ++light)
         for (const Met& met : all)
-            if ((met.sample + light) % light_stride_ == 0)
+            if ((met.sample + light) % options_.light_stride == 0)
                 light_up(scene_.lights[light], light, met, film, spawned);
 }
 
@@ -310,7 +305,7 @@ void Whitted::scatter(const ScatteringPlace& from, const dvec3& way, const Path&
                           share_of_air(light, ray) * std::numbers::inv_pi_v<float>;
         if (max_component(seen) < kMinShadow)
             continue;
-        if (!shadows_ || light.shadowless)
+        if (!options_.shadows || light.shadowless)
             film.add(path.pixel, seen);
         else
             spawned.shadows.push(ray, TriangleId(), {path.pixel, number, 0, seen});
@@ -348,7 +343,7 @@ void Whitted::follow(const Ray& ray, const Path& path, const Hit& hit, Met& met,
                      Spawned& spawned) const {
     const vec3 arriving = path.weight * share_kept(ray, met.surface);
     met.weight = arriving;
-    if (path.depth >= max_depth_ || !sends_rays_on(met.surface))
+    if (path.depth >= options_.max_depth || !sends_rays_on(met.surface))
         return;
     const Cone cone{path.cone.width_at(ray, hit.t), path.cone.spread};
     const uint32_t material = scene_.meshes[hit.id.mesh].material;
@@ -389,7 +384,7 @@ void Whitted::follow(const Ray& ray, const Path& path, const Hit& hit, Met& met,
 
 void Whitted::light_up(const Light& light, uint32_t number, const Met& met, Film& film,
                        Spawned& spawned) const {
-    vec3 arriving = float(light_stride_) * met.weight * direct_light(light, met.surface);
+    vec3 arriving = float(options_.light_stride) * met.weight * direct_light(light, met.surface);
     if (arriving != vec3(0))
         arriving *= thrown_color(scene_, light, met.surface.position);
     if (arriving == vec3(0))
@@ -398,7 +393,7 @@ void Whitted::light_up(const Light& light, uint32_t number, const Met& met, Film
         glm::dot(towards_light(light, met.surface.position), met.surface.geometric_normal) < 0;
     const Ray ray = shadow_ray(light, from_behind ? met.surface.beyond : met.surface.position);
     arriving *= share_of_air(light, ray);
-    if (!shadows_ || light.shadowless) {
+    if (!options_.shadows || light.shadowless) {
         film.add(met.pixel, arriving);
         return;
     }

@@ -29,20 +29,28 @@ void tell_simplifications(const Scene& scene, std::span<const Light> lights,
 
 class BouncedLight;
 
+struct WhittedOptions {
+    /// Max reflections and refractions in a row, below 2^16; the last surface shows its own color
+    /// alone.
+    uint32_t max_depth = 5;
+    bool shadows = true;
+    bool media = true;                     // the scene's are seen
+    std::optional<dvec3> eye{};            // the camera's, which may lie in media
+    const BouncedLight* bounced = nullptr; // the scene's diffuse light, which outlives the rays
+    /// A path asks one light in so many, which counts for as many. Its sample says which ones, so
+    /// that so many samples in a row have asked all.
+    uint32_t light_stride = 1;
+};
+
 class Whitted final : public Integrator {
 public:
-    /// max_depth: reflections and refractions in a row, below 2^16; the last surface shows its own
-    /// color alone. up: of the background, unit length. The scene must outlive it, and its lights
-    /// must be placed. bounced: the scene's diffuse light, which must outlive it; null: none.
-    /// light_stride: a path asks every so many-th light, which counts for as many; its sample says
-    /// which ones, so that so many samples in a row have asked all. media: whether the scene's are
-    /// seen. eye: of the camera, which may lie in media.
-    Whitted(const Scene& scene, const vec3& up, uint32_t max_depth, bool shadows,
-            const BouncedLight* bounced = nullptr, uint32_t light_stride = 1, bool media = true,
-            const std::optional<dvec3>& eye = {});
+    /// up: of the background, unit length. The scene must outlive it, and its lights must be
+    /// placed.
+    Whitted(const Scene& scene, const vec3& up, const WhittedOptions& options);
 
     void shade(std::span<const Ray> rays, std::span<const Path> paths, std::span<const Hit> hits,
                Film& film, Spawned& spawned) const override;
+    size_t max_shadow_rays() const override { return ovc::max_shadow_rays(scene_); }
     bool light_may_pass() const override { return light_may_pass_; }
     bool pass(const Hit& hit, Ray& ray, Shadow& shadow) const override;
 
@@ -63,10 +71,7 @@ private:
 
     const Scene& scene_;
     const vec3 up_;
-    const uint32_t max_depth_;
-    const bool shadows_;
-    const BouncedLight* const bounced_;
-    const uint32_t light_stride_;
+    const WhittedOptions options_;
     const bool light_may_pass_;
     const bool needs_cones_;
     const bool has_media_;
