@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The functions of floats of POV-Ray's language, and those that functions.inc takes from POV-Ray.
 // The formulas of the latter follow from the parameters that functions.inc describes;
-// importers/pov/pov_test.cpp checks them against values that povray 3.7.0 prints.
+// importers/pov/values/expression_test.cpp checks them against values that povray 3.7.0 prints.
 #include "core/texture/formula.h"
 #include "core/texture/noise/noise.h"
 #include "core/texture/surface_functions.h"

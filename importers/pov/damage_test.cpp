@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reads the fuzzer's pov_seeds cut off everywhere or with changed bytes. The fuzzer does so for
 // longer.
+#include "importers/pov/test_parse.h"
 #include "importers/readers.h"
 #include "importers/test_files.h"
 #include "tests/fuzz/pov.h"
@@ -88,7 +89,7 @@ TEST(PovDamage, LoopsRecursionAndGroupsThatDoNotEndAreStopped) {
     std::string deep = "sphere { ";
     for (int i = 0; i < 100'000; ++i)
         deep += "(";
-    EXPECT_FALSE(parse_pov(deep, "x.pov", {}));
+    EXPECT_FALSE(parsed_scene(deep));
 }
 
 TEST(PovDamage, SolidsOfNothingAndOfFarPlanesAreRead) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tests the triangles that shapes are cut into: closed shapes are closed, face outside and have the
 // right volume, under any transformation.
+#include "importers/pov/test_parse.h"
 #include "importers/readers.h"
 #include "importers/test_files.h"
 
@@ -125,13 +126,13 @@ double volume_of_closed(const Result<Scene>& scene) {
 }
 
 TEST_P(PovSolid, IsClosedAndOutwardAndHasItsVolume) {
-    const Result<Scene> scene = parse_pov(GetParam().text, "x.pov", {});
+    const Result<Scene> scene = parsed_scene(GetParam().text);
     ASSERT_TRUE(scene) << scene.error().message;
     EXPECT_NEAR(volume_of_closed(scene), GetParam().volume, 0.004 * GetParam().volume);
 }
 
 TEST_P(PovSolid, NormalsPointOutside) {
-    const Result<Scene> scene = parse_pov(GetParam().text, "x.pov", {});
+    const Result<Scene> scene = parsed_scene(GetParam().text);
     ASSERT_TRUE(scene);
     for (size_t m = 0; m < scene->meshes.size(); ++m)
         for (size_t i = 0; i < scene->meshes[m].normals.size(); ++i) {
@@ -147,20 +148,19 @@ INSTANTIATE_TEST_SUITE_P(All, PovSolid, testing::ValuesIn(kSolids),
                          [](const auto& solid) { return std::string(solid.param.name); });
 
 TEST(PovShapes, HeightsOfAPigmentAreItsGray) {
-    // As povray's trace() tells.
+    // povray's trace() tells the same.
     const std::pair<const char*, double> kColors[] = {
         {"<1, 0, 0>", 0.297}, {"<0, 0.5, 0>", 0.2945}, {"<0, 0, 1>", 0.114}, {"0.5", 0.5}};
     for (const auto& [color, height] : kColors)
-        for (const Triangle& t : triangles_of(parse_pov(
-                 std::string("height_field { function 3, 3 { pigment { rgb ") + color + " } } }",
-                 "x.pov", {})))
+        for (const Triangle& t : triangles_of(parsed_scene(
+                 std::string("height_field { function 3, 3 { pigment { rgb ") + color + " } } }")))
             for (size_t i = 0; i < 3; ++i)
                 EXPECT_NEAR(t[i].y, height, 1e-4) << color;
 }
 
 double area(const std::string& text) {
     double sum = 0;
-    for (const Triangle& t : triangles_of(parse_pov(text, "x.pov", {})))
+    for (const Triangle& t : triangles_of(parsed_scene(text)))
         sum += 0.5 * glm::length(glm::cross(t[1] - t[0], t[2] - t[0]));
     return sum;
 }
@@ -200,9 +200,8 @@ TEST(PovShapes, ClippedOnesAreOpen) {
 
 TEST(PovShapes, PartsOfSolidsKeepTheirLook) {
     const Result<Scene> scene =
-        parse_pov("difference { sphere { 0, 1 pigment { color rgb x } } box { 0, 2 } "
-                  "pigment { color rgb y } interior { ior 1.5 } }",
-                  "x.pov", {});
+        parsed_scene("difference { sphere { 0, 1 pigment { color rgb x } } box { 0, 2 } "
+                     "pigment { color rgb y } interior { ior 1.5 } }");
     ASSERT_TRUE(scene) << scene.error().message;
     ASSERT_EQ(scene->meshes.size(), 2u);
     for (size_t m = 0; m < 2; ++m) {
@@ -228,10 +227,9 @@ TEST(PovShapes, VerticesLieOnTheSphereWhereSomethingAsksForPlaces) {
     within.tolerance = 0.001;
     const std::string plain = "sphere { 0, 1 }";
     for (const Result<Scene>& scene :
-         {parse_pov(plain, "x.pov", within),
-          parse_pov("sphere { 0, 1 pigment { bozo } }", "x.pov", {}),
-          parse_pov("sphere { 0, 1 normal { bumps } }", "x.pov", {}),
-          parse_pov("difference { sphere { 0, 1 } sphere { 9*x, 1 } }", "x.pov", {})})
+         {parse_pov(plain, "x.pov", within), parsed_scene("sphere { 0, 1 pigment { bozo } }"),
+          parsed_scene("sphere { 0, 1 normal { bumps } }"),
+          parsed_scene("difference { sphere { 0, 1 } sphere { 9*x, 1 } }")})
         for (const Triangle& t : triangles_of(scene))
             for (const dvec3& corner : t)
                 ASSERT_NEAR(glm::length(corner), 1, 1e-7);
@@ -263,7 +261,7 @@ TEST(PovShapes, OutlinesAreAsLargeAsTheTrueOnes) {
          {std::pair("sphere { 0, 2 }", 4.0), std::pair("cylinder { 0, y, 3 }", 9.0),
           std::pair("cone { 0, 2, y, 1 open }", 4.0), std::pair("torus { 2, 1 }", 9.0),
           std::pair("lathe { linear_spline 2, <2, 0>, <3, 1> }", 4.0)}) {
-        const double found = area_at_the_equator(triangles_of(parse_pov(words, "x.pov", {})));
+        const double found = area_at_the_equator(triangles_of(parsed_scene(words)));
         EXPECT_NEAR(found / std::numbers::pi, area, 1e-5) << words;
     }
 }
@@ -297,14 +295,13 @@ TEST(PovShapes, FacetsLieWithinTheTolerance) {
 
 TEST(PovShapes, ManyRoundThingsAreCutMoreCoarsely) {
     const std::string loop = "#for (I, 1, 20000) sphere { I*x, 0.4 } #end";
-    const size_t triangles = triangles_of(parse_pov(loop, "x.pov", {})).size();
+    const size_t triangles = triangles_of(parsed_scene(loop)).size();
     EXPECT_LE(triangles, 3'000'000u);
     EXPECT_GE(triangles, 20'000u * 60);
 }
 
 TEST(PovShapes, PlanesKeepTheirPlaceNearTheScene) {
-    const Result<Scene> scene =
-        parse_pov("sphere { <7, 8, 9>, 1 } plane { <1, 2, 3>, 4 }", "x.pov", {});
+    const Result<Scene> scene = parsed_scene("sphere { <7, 8, 9>, 1 } plane { <1, 2, 3>, 4 }");
     ASSERT_TRUE(scene);
     ASSERT_EQ(scene->meshes.front().name, "plane") << "it hides what lies in it";
     const Chunk& plane = scene->soup.chunks.front();
@@ -334,7 +331,7 @@ TEST(PovText, StandsWherePovRaySetsIt) {
         {"internal 4 \"Pi\" 0.3, 0", {0, 0.00196, 0}, {1.373, 1.00196, 0.3}},
     };
     for (const auto& c : cases) {
-        const Result<Scene> scene = parse_pov(fmt::format("text {{ {} }}", c.text), "x.pov", {});
+        const Result<Scene> scene = parsed_scene(fmt::format("text {{ {} }}", c.text));
         if (!scene && scene.error().message.find("found no file") != std::string::npos)
             GTEST_SKIP() << "povray's fonts are not installed";
         ASSERT_TRUE(scene) << scene.error().message;

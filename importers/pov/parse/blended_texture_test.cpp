@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/texture/pattern.h"
-#include "importers/readers.h"
+#include "importers/pov/test_parse.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 namespace ovc {
 
 static Scene blended_scene(const std::string& text) {
-    Result<Scene> scene = parse_pov("#version 3.7;\n" + text, "x.pov", {});
+    Result<Scene> scene = parsed_scene("#version 3.7;\n" + text);
     if (!scene) {
         ADD_FAILURE() << text << ": " << scene.error().message;
         return {};
@@ -67,9 +67,8 @@ TEST(PovBlend, ATriangleHasTheTexturesOfItsCorners) {
                   .meshes.at(0)
                   .uv.size(),
               3u);
-    const Result<Scene> two = parse_pov("#declare T = texture { pigment { rgb x } } "
-                                        "mesh { triangle { 0, x, y texture_list { T T } } }",
-                                        "x.pov", {});
+    const Result<Scene> two = parsed_scene("#declare T = texture { pigment { rgb x } } "
+                                           "mesh { triangle { 0, x, y texture_list { T T } } }");
     ASSERT_FALSE(two);
     EXPECT_NE(two.error().message.find("found 2 textures of a triangle's corners, expected 3"),
               std::string::npos);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/texture/pattern.h"
+#include "importers/pov/test_parse.h"
 #include "importers/readers.h"
 #include "importers/test_files.h"
 
@@ -10,7 +11,7 @@ namespace ovc {
 namespace {
 
 Scene textured_scene(const std::string& text) {
-    Result<Scene> scene = parse_pov("#version 3.7;\n" + text, "x.pov", {});
+    Result<Scene> scene = parsed_scene("#version 3.7;\n" + text);
     if (!scene) {
         ADD_FAILURE() << text << ": " << scene.error().message;
         return {};
@@ -299,7 +300,7 @@ TEST(PovNormal, HasFacets) {
     EXPECT_EQ(pattern.parameters[FacetParameter::kSize], 0.3);
     EXPECT_EQ(pattern.parameters[FacetParameter::kMetric], 3);
     EXPECT_TRUE(scene.omissions.empty());
-    EXPECT_FALSE(parse_pov("box { 0, 1 pigment { facets size 1 } }", "x.pov", {}));
+    EXPECT_FALSE(parsed_scene("box { 0, 1 pigment { facets size 1 } }"));
 }
 
 TEST(PovTexture, FinishesHaveFilms) {
@@ -425,12 +426,11 @@ TEST(PovPattern, HasOnlySoManyParts) {
                             "texture { tiles { texture { T } tile2 texture { T } } }",
                             "texture { T normal { average normal_map { [1 N][1 N] } } }"}) {
         const auto scene =
-            parse_pov("#declare N = normal { bumps } #declare T = texture { pigment { rgb 1 } } "
-                      "#for (I, 0, 40) #declare T = " +
-                          std::string(mix) +
-                          " #declare N = normal { average normal_map { [1 N][1 N] } } #end "
-                          "sphere { 0, 1 texture { T } }",
-                      "x.pov", {});
+            parsed_scene("#declare N = normal { bumps } #declare T = texture { pigment { rgb 1 } } "
+                         "#for (I, 0, 40) #declare T = " +
+                         std::string(mix) +
+                         " #declare N = normal { average normal_map { [1 N][1 N] } } #end "
+                         "sphere { 0, 1 texture { T } }");
         ASSERT_FALSE(scene) << mix;
         EXPECT_NE(scene.error().message.find("found a mix of more than 100000 patterns"),
                   std::string::npos)
@@ -439,8 +439,8 @@ TEST(PovPattern, HasOnlySoManyParts) {
 }
 
 TEST(PovPattern, MixesTexturesOnly) {
-    const Result<Scene> scene = parse_pov(
-        "box { 0, 1 texture { gradient x color_map { [0 rgb 0] [1 rgb 1] } } }", "x.pov", {});
+    const Result<Scene> scene =
+        parsed_scene("box { 0, 1 texture { gradient x color_map { [0 rgb 0] [1 rgb 1] } } }");
     ASSERT_FALSE(scene);
     EXPECT_NE(scene.error().message.find("expected textures"), std::string::npos);
 }
@@ -450,7 +450,7 @@ TEST(PovPattern, HasTilings) {
     ASSERT_EQ(scene.textures.size(), 1u);
     EXPECT_EQ(scene.textures[0].pattern.kind, Pattern::Kind::Tiling);
     EXPECT_EQ(scene.textures[0].pattern.parameters[0], 7);
-    const Result<Scene> other = parse_pov("plane { y, 0 pigment { tiling 28 } }", "x.pov", {});
+    const Result<Scene> other = parsed_scene("plane { y, 0 pigment { tiling 28 } }");
     ASSERT_FALSE(other);
     EXPECT_NE(other.error().message.find("the number of a tiling"), std::string::npos)
         << other.error().message;

@@ -3,7 +3,7 @@
 // refused, and that height fields of them stand where povray's trace() meets them.
 #include "importers/pov/pictures/picture.h"
 
-#include "importers/readers.h"
+#include "importers/pov/test_parse.h"
 #include "importers/test_files.h"
 
 #include <fmt/format.h>
@@ -113,10 +113,9 @@ TEST(PovPicture, IsRefusedWhereverItEndsTooEarly) {
 
 /// Returns 255 times the height at which a ray straight down meets the field.
 double height(const std::string& field, const std::string& x_z) {
-    const Result<Scene> scene = parse_pov("#declare A = height_field { " + field +
-                                              " } #declare N = y; #declare P = trace(A, " + x_z +
-                                              ", -y, N); box { -1e3, (1 + P.y) * <1, 1, 1> }",
-                                          "x.pov", {});
+    const Result<Scene> scene = parsed_scene("#declare A = height_field { " + field +
+                                             " } #declare N = y; #declare P = trace(A, " + x_z +
+                                             ", -y, N); box { -1e3, (1 + P.y) * <1, 1, 1> }");
     if (!scene) {
         ADD_FAILURE() << scene.error().message;
         return 0;
@@ -169,10 +168,9 @@ TEST(PovHeightField, TakesTheNumbersOfColors) {
 TEST(PovImageMap, HasItsAverageColorWithoutThePicture) {
     const TestFolder folder;
     const auto picture = folder.write("a.ppm", "P3\n2 1\n255\n255 0 0 188 188 0\n");
-    const Result<Scene> scene = parse_pov("#version 3.7; global_settings { assumed_gamma 1 } "
-                                          "sphere { 0, 1 pigment { image_map { ppm \"" +
-                                              picture.string() + "\" once transmit all 0.25 } } }",
-                                          "x.pov", {});
+    const Result<Scene> scene = parsed_scene("#version 3.7; global_settings { assumed_gamma 1 } "
+                                             "sphere { 0, 1 pigment { image_map { ppm \"" +
+                                             picture.string() + "\" once transmit all 0.25 } } }");
     ASSERT_TRUE(scene) << scene.error().message;
     const ovc::Material& material = scene->materials.at(0);
     EXPECT_NEAR(material.color.r, (1 + 0.5029) / 2, 0.001);
