@@ -3,7 +3,7 @@
 // held.
 #pragma once
 
-#include "importers/scene_file.h"
+#include "importers/scene_file/scene_file.h"
 #include "importers/scratch/triangle_store.h"
 #include "importers/test_files.h"
 

@@ -3,7 +3,7 @@
 // bit in any part: whoever opens one, or traces rays through it, gets the right hits or a sentence.
 #include "host/backend/backend.h"
 #include "host/scene/scene_cache.h"
-#include "importers/scene_file.h"
+#include "importers/scene_file/scene_file.h"
 #include "kdtree/test_soups.h"
 #include "plugin/build/saved_levels.h"
 

@@ -12,7 +12,7 @@
 #include "host/scene/scene_source.h"
 #include "host/scene/scene_summary.h"
 #include "host/terminal/interrupt.h"
-#include "importers/scene_file.h"
+#include "importers/scene_file/scene_file.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -60,7 +60,7 @@ static Json materials_json(const Scene& scene) {
     return list;
 }
 
-/// What a scene takes of each kind of memory.
+/// The memory that a scene takes, of each kind.
 struct Takes {
     uint64_t file = 0; // as .ovc
     uint64_t host = 0;

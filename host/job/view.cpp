@@ -14,8 +14,8 @@
 #include "host/terminal/message.h"
 #include "host/terminal/progress.h"
 #include "host/terminal/version.h"
-#include "importers/scene_fields.h"
-#include "importers/scene_file.h"
+#include "importers/scene_file/scene_fields.h"
+#include "importers/scene_file/scene_file.h"
 
 #include <fmt/format.h>
 
@@ -30,7 +30,7 @@ namespace fs = std::filesystem;
 
 /// Returns how many camera rays each pixel gets, or at least gets.
 static uint32_t samples_of(const RenderJob& job, const Scene& scene) {
-    // Those of the file are for its own camera, whose lens or faces need them.
+    // The file's samples are for its own camera, whose lens or faces need them.
     const bool own_camera = !job.camera && job.lens_radius.value_or(1) > 0;
     const uint32_t asked_for =
         own_camera && !job.render.progressive ? scene.samples.value_or(1) : 1;

@@ -7,7 +7,7 @@
 #include "host/render/sight.h"
 #include "host/render/test_shapes.h"
 #include "importers/importer.h"
-#include "importers/scene_file.h"
+#include "importers/scene_file/scene_file.h"
 #include "testscenes/plants/leaf_canopy.h"
 
 #include <gtest/gtest.h>

@@ -5,7 +5,7 @@
 #include "host/backend/backend.h"
 #include "host/scene/scene_source.h"
 #include "importers/file/step_file.h"
-#include "importers/scene_file.h"
+#include "importers/scene_file/scene_file.h"
 
 #include <filesystem>
 #include <optional>

@@ -4,7 +4,7 @@
 
 #include "host/backend/backend.h"
 #include "host/scene/scene_source.h"
-#include "importers/scene_file.h"
+#include "importers/scene_file/scene_file.h"
 
 #include <filesystem>
 #include <optional>

@@ -3,7 +3,7 @@
 #include "importers/pbrt/assembly.h"
 #include "importers/pbrt/interpret/interpreter.h"
 #include "importers/readers.h"
-#include "importers/sound_meshes.h"
+#include "importers/scene_file/sound_meshes.h"
 
 #include <fmt/format.h>
 

@@ -4,8 +4,8 @@
 
 #include "core/file/test_archive.h"
 #include "importers/readers.h"
-#include "importers/scene_file.h"
-#include "importers/sound_meshes.h"
+#include "importers/scene_file/scene_file.h"
+#include "importers/scene_file/sound_meshes.h"
 #include "tests/fuzz/require.h"
 
 #include <string>

@@ -3,7 +3,7 @@
 #include "tests/fuzz/pbrt.h"
 
 #include "importers/readers.h"
-#include "importers/sound_meshes.h"
+#include "importers/scene_file/sound_meshes.h"
 #include "tests/fuzz/require.h"
 
 #include <string>

@@ -2,7 +2,7 @@
 #include "tests/fuzz/pov.h"
 
 #include "importers/readers.h"
-#include "importers/sound_meshes.h"
+#include "importers/scene_file/sound_meshes.h"
 #include "tests/fuzz/require.h"
 
 namespace ovc {

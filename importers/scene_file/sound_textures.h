@@ -61,7 +61,7 @@ inline bool is_sound(const Texture& texture, size_t pictures) {
     return texture.stops.size() >= (texture.kind == TextureKind::Mix ? 3u : 1u);
 }
 
-/// What the textures of a scene need at most, or nothing where one of them is not sound.
+/// The most that textures of a scene need, or nothing where one of them is not sound.
 struct TextureNeeds {
     std::vector<double> work;
     std::vector<uint32_t> depth;

@@ -1,83 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
-// The scene file is an archive of the fields, the meshes' extents, the corners, the normals, the
-// texture coordinates, the checksums of blocks of those three, and the levels.
-#include "importers/scene_file.h"
-
+// Reads scene files. Everything that a renderer relies on is checked, except the levels.
 #include "core/file/file_blocks.h"
 #include "core/file/value_bytes.h"
 #include "core/function_ref.h"
 #include "importers/readers.h"
-#include "importers/scene_fields.h"
-#include "importers/sound_meshes.h"
-#include "importers/sound_textures.h"
+#include "importers/scene_file/scene_fields.h"
+#include "importers/scene_file/scene_file.h"
+#include "importers/scene_file/scene_file_format.h"
+#include "importers/scene_file/sound_meshes.h"
+#include "importers/scene_file/sound_textures.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
-#include <cassert>
 #include <cmath>
-#include <map>
 #include <optional>
 #include <utility>
 
 namespace ovc {
 
 namespace {
-
-constexpr std::string_view kKind = "ovc scene";
-/// Raise it with every change of scene_fields.h, and when an importer makes another scene of the
-/// same file.
-constexpr uint32_t kVersion = 24;
-
-/// The checksums of the blocks (core/file/file_blocks.h) of corners, normals and texture
-/// coordinates.
-constexpr std::array<const char*, 3> kSums{"corner sums", "normal sums", "uv sums"};
-
-/// Where a mesh's corners and normals lie in the other parts.
-struct MeshExtent {
-    dvec3 origin{0};
-    uint64_t corners = 0; // its own, in the part "corners"
-    uint64_t normals = 0;
-    uint64_t uv = 0;
-    uint64_t corners_from = kOwnCorners; // or an earlier mesh, whose corners this one shares
-    uint32_t is_placed = 0;
-    uint32_t mask = 0; // of the chunk
-    Transform transform{};
-
-    static constexpr uint64_t kOwnCorners = ~uint64_t(0);
-};
-static_assert(sizeof(MeshExtent) == 160);
-
-std::vector<MeshExtent> extents_of(const Scene& scene) {
-    assert(scene.meshes.size() == scene.soup.chunks.size());
-    std::vector<MeshExtent> extents;
-    std::map<Chunk::MeshKey, size_t> first_of;
-    for (size_t m = 0; m < scene.meshes.size(); ++m) {
-        const Chunk& chunk = scene.soup.chunks[m];
-        const MeshInfo& mesh = scene.meshes[m];
-        MeshExtent extent{chunk.origin(), chunk.corners().size(), mesh.normals.size(),
-                          mesh.uv.size()};
-        if (chunk.stored_corners())
-            extent.corners = 3 * uint64_t(chunk.size());
-        if (mesh.stored_normals)
-            extent.normals = 3 * mesh.stored_normals->triangles();
-        if (mesh.stored_uv)
-            extent.uv = 3 * mesh.stored_uv->triangles();
-        const auto [first, is_new] = first_of.try_emplace(chunk.mesh_key(), m);
-        if (!is_new) {
-            extent.corners = 0;
-            extent.corners_from = first->second;
-        }
-        extent.mask = chunk.mask();
-        if (chunk.transform()) {
-            extent.is_placed = 1;
-            extent.transform = *chunk.transform();
-        }
-        extents.push_back(extent);
-    }
-    return extents;
-}
 
 /// Returns the chunk of a mesh with corners of its own, which begin behind so many.
 using OwnChunk = FunctionRef<Chunk(const MeshExtent& extent, uint64_t first_corner)>;
@@ -111,7 +54,7 @@ struct Amounts {
     uint64_t uv = 0;
 };
 
-/// How meshes get what lies in the large parts.
+/// The functions by which meshes get their values from the large parts.
 struct Sharing {
     Amounts all;
     OwnChunk own_chunk;
@@ -265,7 +208,7 @@ Result<SceneFile> read(std::shared_ptr<const DiskFile> opened, const StoredArchi
     std::vector<uint64_t> sums;
     std::array<uint64_t, 3> counts{};
     for (size_t i = 0; i < counts.size(); ++i) {
-        const auto more = archive.items<uint64_t>(kSums[i]);
+        const auto more = archive.items<uint64_t>(kBlockSums[i]);
         if (!more)
             return more.error();
         counts[i] = more->size();
@@ -315,206 +258,6 @@ const FileStamp* Provenance::changed_file() const {
     return changed == files.end() ? nullptr : &*changed;
 }
 
-namespace {
-
-/// The parts of a scene file that are large.
-struct LargeParts {
-    std::vector<MeshExtent> extents;
-    std::function<Result<Done>(const ByteSink&)> write_corners, write_normals;
-};
-
-/// Returns a sink that goes to a part of the file, and wants no more once a write has failed:
-/// building the levels for a full disk would be in vain.
-ByteSink sink_to(ArchiveWriter& writer, const OutputFile& out) {
-    return [&](Bytes bytes) {
-        writer.write(bytes);
-        return !out.has_failed();
-    };
-}
-
-/// Returns the bytes that the values of each mesh take.
-std::vector<uint64_t> runs_of(std::span<const MeshExtent> extents, uint64_t MeshExtent::*values,
-                              size_t value_bytes) {
-    std::vector<uint64_t> runs;
-    for (const MeshExtent& extent : extents)
-        runs.push_back(extent.*values * value_bytes);
-    return runs;
-}
-
-/// Writes everything but the levels.
-Result<Done> write_front(const Scene& scene, const LargeParts& parts, const Provenance& from,
-                         const OutputFile& out, ArchiveWriter& writer) {
-    ByteWriter fields;
-    fields(scene, scene.meshes, from.request, from.files, from.warnings);
-    const ByteSink sink = sink_to(writer, out);
-    writer.part<std::byte>("fields", fields.bytes());
-    writer.part<MeshExtent>("extents", parts.extents);
-    std::array<std::vector<uint64_t>, 3> sums;
-    writer.begin("corners");
-    auto runs = runs_of(parts.extents, &MeshExtent::corners, sizeof(vec3));
-    if (const auto done =
-            parts.write_corners(summing_blocks(sink, runs, 3 * sizeof(vec3), sums[0]));
-        !done)
-        return done;
-    writer.begin("normals");
-    runs = runs_of(parts.extents, &MeshExtent::normals, sizeof(vec3));
-    if (const auto done =
-            parts.write_normals(summing_blocks(sink, runs, 3 * sizeof(vec3), sums[1]));
-        !done)
-        return done;
-    writer.begin("uv");
-    runs = runs_of(parts.extents, &MeshExtent::uv, sizeof(vec2));
-    const ByteSink uv_sink = summing_blocks(sink, runs, 3 * sizeof(vec2), sums[2]);
-    for (const MeshInfo& mesh : scene.meshes)
-        uv_sink(bytes_of(std::span<const vec2>(mesh.uv)));
-    for (size_t i = 0; i < sums.size(); ++i)
-        writer.part<uint64_t>(kSums[i], sums[i]);
-    return Done{};
-}
-
-/// Ends the file.
-Result<Done> write_levels(const SaveLevels& save_levels, OutputFile& out, ArchiveWriter& writer) {
-    if (save_levels) {
-        writer.begin("levels");
-        if (const Result<Done> saved = save_levels(sink_to(writer, out));
-            !saved && !out.has_failed())
-            return saved;
-    }
-    writer.finish();
-    return out.commit();
-}
-
-Result<Done> write_file(const Scene& scene, const LargeParts& parts, const Provenance& from,
-                        const SaveLevels& save_levels, const std::filesystem::path& path) {
-    Result<OutputFile> out = OutputFile::create(path);
-    if (!out)
-        return out.error();
-    ArchiveWriter writer(out->sink(), kKind, kVersion);
-    if (const Result<Done> done = write_front(scene, parts, from, *out, writer); !done)
-        return done;
-    return write_levels(save_levels, *out, writer);
-}
-
-LargeParts parts_of(const Scene& scene, const TriangleStore& store) {
-    assert(store.meshes() == scene.meshes.size());
-    LargeParts parts;
-    for (size_t m = 0; m < scene.meshes.size(); ++m) {
-        MeshExtent extent{scene.soup.chunks[m].origin(), store.corners(m), store.normals(m),
-                          scene.meshes[m].uv.size()};
-        extent.mask = scene.soup.chunks[m].mask();
-        parts.extents.push_back(extent);
-    }
-    parts.write_corners = [&](const ByteSink& sink) { return store.write_corners(sink); };
-    parts.write_normals = [&](const ByteSink& sink) { return store.write_normals(sink); };
-    return parts;
-}
-
-} // namespace
-
-Result<Done> write_scene_file(const Scene& scene, const Provenance& from,
-                              const SaveLevels& save_levels, const std::filesystem::path& path) {
-    LargeParts parts{extents_of(scene), {}, {}};
-    parts.write_corners = [&](const ByteSink& sink) {
-        for (size_t m = 0; m < parts.extents.size(); ++m)
-            if (parts.extents[m].corners > 0)
-                sink(bytes_of(scene.soup.chunks[m].corners()));
-        return Done{};
-    };
-    parts.write_normals = [&](const ByteSink& sink) {
-        for (const MeshInfo& mesh : scene.meshes)
-            sink(bytes_of(std::span<const vec3>(mesh.normals)));
-        return Done{};
-    };
-    return write_file(scene, parts, from, save_levels, path);
-}
-
-Result<Done> write_scene_file(const Scene& scene, const TriangleStore& store,
-                              const Provenance& from, const SaveLevels& save_levels,
-                              const std::filesystem::path& path) {
-    return write_file(scene, parts_of(scene, store), from, save_levels, path);
-}
-
-Result<std::vector<ArchivePart>> write_front(const Scene& scene, const TriangleStore& store,
-                                             const Provenance& from, OutputFile& out) {
-    ArchiveWriter writer(out.sink(), kKind, kVersion);
-    if (const Result<Done> done = write_front(scene, parts_of(scene, store), from, out, writer);
-        !done)
-        return done.error();
-    std::vector<ArchivePart> parts = writer.end_part();
-    if (const Result<Done> flushed = out.flush(); !flushed)
-        return flushed.error();
-    return parts;
-}
-
-uint64_t end_of(const SceneFront& front) {
-    return ArchiveWriter({}, kKind, kVersion, front.parts).bytes();
-}
-
-Result<Done> finish_scene_file(const SceneFront& front, const SaveLevels& save_levels,
-                               OutputFile& out) {
-    ArchiveWriter writer(out.sink(), kKind, kVersion, front.parts);
-    return write_levels(save_levels, out, writer);
-}
-
-/// Returns how many blocks of values, each with a checksum, such meshes have.
-static uint64_t blocks_of(std::span<const MeshExtent> extents) {
-    uint64_t blocks = 0;
-    for (const MeshExtent& extent : extents)
-        blocks += blocks_of(extent.corners / 3) + blocks_of(extent.normals / 3) +
-                  blocks_of(extent.uv / 3);
-    return blocks;
-}
-
-static uint64_t file_bytes(const Scene& scene, std::span<const MeshExtent> extents,
-                           uint64_t levels_bytes) {
-    constexpr uint64_t kFrame = 1024; // header, table, and the gaps between parts
-    ByteWriter fields;
-    fields(scene, scene.meshes);
-    uint64_t bytes = kFrame + fields.bytes().size() + levels_bytes + extents.size_bytes() +
-                     blocks_of(extents) * sizeof(uint64_t);
-    for (const MeshExtent& extent : extents)
-        bytes += (extent.corners + extent.normals) * sizeof(vec3) + extent.uv * sizeof(vec2);
-    return bytes;
-}
-
-uint64_t scene_file_bytes(const Scene& scene, uint64_t levels_bytes) {
-    return scene.on_disk ? scene.on_disk->file.bytes()
-                         : file_bytes(scene, extents_of(scene), levels_bytes);
-}
-
-uint64_t scene_file_bytes(const Scene& scene, const TriangleStore& store, uint64_t levels_bytes) {
-    return file_bytes(scene, parts_of(scene, store).extents, levels_bytes);
-}
-
-uint64_t bytes_for_shading(const Scene& scene, const TriangleStore& store, uint64_t host_bytes) {
-    return SceneOnDisk::own_bytes_of(host_bytes, blocks_of(parts_of(scene, store).extents));
-}
-
-uint64_t checksum_of(const Scene& scene) {
-    ByteWriter fields;
-    fields(scene, scene.meshes);
-    Checksum sum;
-    sum.add(fields.bytes());
-    const std::vector<MeshExtent> extents = extents_of(scene);
-    sum.add(bytes_of(std::span<const MeshExtent>(extents)));
-    if (scene.on_disk) {
-        sum.add_value(scene.on_disk->values_checksum);
-        return sum.value();
-    }
-    std::array<Checksum, 3> values; // as a file has them of its large parts
-    for (size_t m = 0; m < scene.meshes.size(); ++m) {
-        if (extents[m].corners > 0)
-            values[0].add(bytes_of(scene.soup.chunks[m].corners()));
-        values[1].add(bytes_of(std::span<const vec3>(scene.meshes[m].normals)));
-        values[2].add(bytes_of(std::span<const vec2>(scene.meshes[m].uv)));
-    }
-    Checksum all;
-    for (const Checksum& part : values)
-        all.add_value(part.value());
-    sum.add_value(all.value());
-    return sum.value();
-}
-
 Result<SceneFile> read_scene_file(const std::filesystem::path& path) {
     Result<MappedFile> mapped = MappedFile::open(path);
     if (!mapped)
@@ -522,7 +265,7 @@ Result<SceneFile> read_scene_file(const std::filesystem::path& path) {
     const auto failed = [&](const Error& error) {
         return Error{fmt::format("{}: the file {}", path.string(), error.message)};
     };
-    const Result<Archive> archive = Archive::open(mapped->bytes(), kKind, kVersion);
+    const Result<Archive> archive = Archive::open(mapped->bytes(), kSceneKind, kSceneVersion);
     if (!archive)
         return failed(archive.error());
     Result<SceneFile> file = read(*archive);
@@ -544,7 +287,7 @@ Result<SceneFile> open_scene_file(const std::filesystem::path& path, uint64_t ho
     const auto read_bytes = [&](uint64_t offset, std::span<std::byte> to) {
         return disk->read(offset, to);
     };
-    const auto archive = StoredArchive::open(read_bytes, disk->bytes(), kKind, kVersion);
+    const auto archive = StoredArchive::open(read_bytes, disk->bytes(), kSceneKind, kSceneVersion);
     if (!archive)
         return failed(archive.error());
     if (archive->place("levels").bytes == 0)
@@ -603,7 +346,8 @@ Result<SceneFront> open_front(const std::filesystem::path& path, std::vector<Arc
 
 Result<Done> check_front(const std::filesystem::path& path, const SceneFront& front) {
     return of_unfinished(path, front.parts, [](const StoredArchive& archive) {
-        for (const char* name : {"corners", "normals", "uv", kSums[0], kSums[1], kSums[2]})
+        for (const char* name :
+             {"corners", "normals", "uv", kBlockSums[0], kBlockSums[1], kBlockSums[2]})
             if (const Result<Done> fine = archive.check_part(name); !fine)
                 return fine;
         return Result<Done>(Done{});
@@ -624,10 +368,6 @@ Result<Scene> read_ovc(const std::filesystem::path& path, const ImportOptions& o
             fmt::format("{}: it shows {} as that was before it changed", path.string(),
                         changed->path));
     return std::move(file->scene);
-}
-
-Result<Done> write_ovc(const Scene& scene, const std::filesystem::path& path) {
-    return write_scene_file(scene, {}, {}, path);
 }
 
 } // namespace ovc

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Scene files give back every field; damage is an error, whatever it hits; readers tell which files
 // have changed since.
-#include "importers/scene_file.h"
+#include "importers/scene_file/scene_file.h"
 
 #include "core/file/value_bytes.h"
 #include "importers/readers.h"
-#include "importers/scene_fields.h"
+#include "importers/scene_file/scene_fields.h"
 #include "importers/test_files.h"
 #include "tests/fuzz/importers.h"
 
