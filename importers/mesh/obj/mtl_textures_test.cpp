@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "importers/mesh/mtl_textures.h"
+#include "importers/mesh/obj/mtl_textures.h"
 
 #include "importers/importer.h"
 #include "importers/test_files.h"

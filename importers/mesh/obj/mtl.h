@@ -6,7 +6,7 @@
 #include "core/scene.h"
 #include "core/system/log.h"
 #include "importers/file/source.h"
-#include "importers/mesh/mtl_textures.h"
+#include "importers/mesh/obj/mtl_textures.h"
 
 #include <filesystem>
 #include <string>

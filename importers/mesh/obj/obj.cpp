@@ -6,7 +6,7 @@
 #include "importers/file/source.h"
 #include "importers/file/text.h"
 #include "importers/mesh/blocks.h"
-#include "importers/mesh/mtl.h"
+#include "importers/mesh/obj/obj_materials.h"
 #include "importers/mesh/polygon.h"
 #include "importers/origin.h"
 #include "importers/readers.h"
@@ -16,7 +16,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <set>
 #include <unordered_map>
 #include <unordered_set>
 
@@ -70,8 +69,8 @@ public:
         : source_(source),
           path_(path),
           log_(options.log),
-          files_read_(options.files),
           streaming_(options.streaming),
+          materials_(path, options),
           shares_(streaming_ ? streaming_->host_bytes : kUnlimited),
           vertices_(streaming_ ? streaming_->folder : "", shares_.vertices),
           normals_(streaming_ ? streaming_->folder : "", shares_.normals),
@@ -122,9 +121,6 @@ private:
     bool read_corner(std::string_view word);
     bool read_index(std::string_view word, std::string_view text, size_t count, size_t& index);
     bool fail_index(int64_t index, size_t count);
-    void read_libraries(std::string_view rest);
-    bool read_library(std::string_view name);
-    void use_material(std::string_view name);
     bool find_mesh();
     bool add_mesh(std::string name);
     bool add_polygon();
@@ -133,14 +129,12 @@ private:
     bool pass_on(size_t mesh);
     bool pass_on_all();
     bool check_scratch();
-    void say_left_out() const;
-    std::vector<uint32_t> take_materials(Scene& scene);
 
     Source& source_;
     const std::filesystem::path& path_;
     const LogSink& log_;
-    FilesRead* const files_read_;
     const Streaming* const streaming_;
+    ObjMaterials materials_;
     const Shares shares_;
     bool is_wanted_ = true; // by its sink
     Error error_;
@@ -149,19 +143,14 @@ private:
 
     ScratchArray<dvec3> vertices_;
     ScratchArray<vec3> normals_;
-    ScratchArray<vec2> uv_; // while keeps_uv_
-    bool keeps_uv_ = true;  // a library has textures, or none has been read
-    bool any_textures_ = false;
-    bool has_texture_coordinates_ = false;
+    ScratchArray<vec2> uv_; // while materials_.keeps_uv()
+    bool has_uv_ = false;
     Box bounds_;
     std::optional<dvec3> origin_; // chosen from the vertices that precede the first face
     std::vector<Corner> polygon_;
     std::vector<dvec3> outline_;
     std::vector<std::array<uint32_t, 3>> cut_;
 
-    std::vector<LibraryMaterial> materials_{LibraryMaterial{}}; // the first before any usemtl
-    std::unordered_map<std::string, uint32_t> material_ids_;
-    std::unordered_set<std::string> libraries_; // paths that were read
     uint32_t material_ = 0;
     std::string object_;
     std::string group_;
@@ -213,10 +202,15 @@ bool ObjReader::read_other(std::string_view keyword, std::string_view rest) {
         group_ = keyword == "g" ? name : "";
         mesh_known_ = false;
     } else if (keyword == "usemtl") {
-        use_material(trimmed(rest));
+        material_ = materials_.find(trimmed(rest),
+                                    [&](auto& kind, auto& sentence) { warn(kind, sentence); });
+        mesh_known_ = false;
     } else if (keyword == "mtllib") {
-        read_libraries(trimmed(rest));
-        return error_.message.empty(); // else that of a library
+        const Result<Done> done = materials_.read_libraries(
+            trimmed(rest), has_uv_, [&](auto& kind, auto& sentence) { warn(kind, sentence); });
+        if (!done)
+            error_ = done.error();
+        return bool(done);
     } else {
         for (const char c : keyword)
             if (c < ' ' || c > '~')
@@ -273,10 +267,10 @@ bool ObjReader::read_normal(std::string_view rest) {
     return true;
 }
 
-/// What is no number counts as 0: no mesh is refused for its texture coordinates.
+/// A word that is no number counts as 0: no mesh is refused for its texture coordinates.
 bool ObjReader::read_uv(std::string_view rest) {
-    has_texture_coordinates_ = true;
-    if (!keeps_uv_)
+    has_uv_ = true;
+    if (!materials_.keeps_uv())
         return true;
     const float u = parse_float(next_word(rest)).value_or(0);
     const float v = parse_float(next_word(rest)).value_or(0);
@@ -312,9 +306,8 @@ bool ObjReader::read_corner(std::string_view word) {
         corner.normal = *normal > 0 ? *normal - 1 : int64_t(normals_.size()) + *normal;
         corner.has_normal = true;
     }
-    corner.has_texture =
-        has_texture_coordinates_ && slash != word.npos && slash + 1 < std::min(second, word.size());
-    if (corner.has_texture && keeps_uv_) {
+    corner.has_texture = has_uv_ && slash != word.npos && slash + 1 < std::min(second, word.size());
+    if (corner.has_texture && materials_.keeps_uv()) {
         const std::string_view text = word.substr(slash + 1, second - slash - 1);
         const int64_t uv = parse_number<int64_t>(text).value_or(0);
         corner.uv = uv > 0 ? uv - 1 : int64_t(uv_.size()) + uv;
@@ -344,74 +337,6 @@ bool ObjReader::read_index(std::string_view word, std::string_view text, size_t 
     return true;
 }
 
-/// Reads one name with blanks in it, or several names; a blank may be written '\ '.
-void ObjReader::read_libraries(std::string_view rest) {
-    for (const std::string_view name : {rest, trimmed(without_comment(rest))})
-        if (name.find('\\') == name.npos && read_library(name))
-            return;
-    rest = trimmed(without_comment(rest));
-    std::string name;
-    bool any = false;
-    for (size_t i = 0; i <= rest.size(); ++i) {
-        if (i < rest.size() && rest[i] == '\\' && i + 1 < rest.size() && rest[i + 1] == ' ') {
-            name += rest[++i];
-        } else if (i < rest.size() && !is_blank(rest[i])) {
-            name += rest[i] == '\\' ? '/' : rest[i];
-        } else if (!name.empty()) {
-            any = read_library(name) || any;
-            name.clear();
-        }
-    }
-    if (!any)
-        warn("mtllib",
-             fmt::format("no material library {}: its materials become grey", quoted(rest)));
-}
-
-bool ObjReader::read_library(std::string_view name) {
-    const std::filesystem::path path = path_.parent_path() / std::string(name);
-    if (libraries_.contains(path.string()))
-        return true;
-    Result<Source> source = Source::open(path, files_read_);
-    if (!source)
-        return false;
-    auto materials = read_mtl(*source, path, log_);
-    if (!materials) {
-        error_ = materials.error();
-        return true;
-    }
-    any_textures_ = any_textures_ || std::ranges::any_of(*materials, [](const LibraryMaterial& m) {
-                        return !m.shown.empty();
-                    });
-    // Those that were passed over once are not read again, and their indices would not fit.
-    keeps_uv_ = any_textures_ && (keeps_uv_ || !has_texture_coordinates_);
-    libraries_.insert(path.string());
-    for (LibraryMaterial& read : *materials) {
-        const std::string& called = read.material.name;
-        const auto [at, is_new] = material_ids_.try_emplace(called, uint32_t(materials_.size()));
-        if (is_new)
-            materials_.emplace_back();
-        else if (materials_[at->second].material != Material{called})
-            continue; // the name is defined; without a definition its usemtl preceded its mtllib
-        materials_[at->second] = std::move(read);
-    }
-    return true;
-}
-
-void ObjReader::use_material(std::string_view name) {
-    if (!material_ids_.contains(std::string(name)))
-        name = trimmed(without_comment(name));
-    const auto [at, is_new] =
-        material_ids_.try_emplace(std::string(name), uint32_t(materials_.size()));
-    if (is_new) {
-        materials_.push_back({Material{std::string(name)}});
-        warn("usemtl",
-             fmt::format("no material {}: it becomes grey, and so do others that are missing",
-                         quoted(name)));
-    }
-    material_ = at->second;
-    mesh_known_ = false;
-}
-
 /// Makes mesh_ that of the object, group and material at hand.
 bool ObjReader::find_mesh() {
     if (!mesh_known_) {
@@ -438,7 +363,7 @@ bool ObjReader::add_mesh(std::string name) {
     meshes_.emplace_back();
     meshes_.back().name = std::move(name);
     meshes_.back().material = material_;
-    meshes_.back().wants_uv = keeps_uv_ && !materials_[material_].shown.empty();
+    meshes_.back().wants_uv = materials_.keeps_uv() && materials_.has_textures(material_);
     if (streaming_)
         streaming_->sink.begin_mesh();
     return true;
@@ -529,60 +454,16 @@ bool ObjReader::check_scratch() {
     return true;
 }
 
-/// Warns of the materials that some mesh has, because a library may serve many files.
-void ObjReader::say_left_out() const {
-    std::set<uint32_t> used;
-    for (const Mesh& mesh : meshes_)
-        used.insert(mesh.material);
-    std::vector<std::string> textures, emitters;
-    for (const uint32_t m : used) {
-        assert(m < materials_.size());
-        for (const std::string& texture : materials_[m].textures)
-            if (std::find(textures.begin(), textures.end(), texture) == textures.end())
-                textures.push_back(texture);
-        if (materials_[m].emits)
-            emitters.push_back(ovc::quoted(materials_[m].material.name));
-    }
-    const auto warn_of = [&](const std::string& sentence) {
-        say(log_, LogLevel::Warning, source_.error(sentence).message);
-    };
-    if (!textures.empty())
-        warn_of(fmt::format("{} of its materials left out: {}", counted(textures.size(), "texture"),
-                            listed(textures)));
-    if (!emitters.empty())
-        warn_of(fmt::format("light from {} (Ke) left out: {}", counted(emitters.size(), "material"),
-                            listed(emitters)));
-}
-
-/// Moves the materials to the scene, with the textures of those that a mesh has. Returns for each
-/// the cutout of its textures, or kNone.
-std::vector<uint32_t> ObjReader::take_materials(Scene& scene) {
-    std::vector<uint32_t> cutouts(materials_.size(), kNone);
-    std::vector<bool> used(materials_.size());
-    for (const Mesh& mesh : meshes_)
-        used[mesh.material] = true;
-    for (size_t m = 0; m < materials_.size(); ++m) {
-        const LibraryMaterial& read = materials_[m];
-        Material& material = scene.materials.emplace_back(read.material);
-        MtlMaterial to{material, {}};
-        for (const MtlTexture& texture : read.shown)
-            if (used[m])
-                add_mtl_texture(texture, read.library, scene, to);
-        if (to.cutout) {
-            cutouts[m] = uint32_t(scene.cutouts.size());
-            scene.cutouts.push_back(*to.cutout);
-        }
-    }
-    return cutouts;
-}
-
 Result<Scene> ObjReader::take() {
     vertices_.clear();
     normals_.clear();
     uv_.clear();
     Scene scene;
     scene.name = path_.stem().string();
-    const std::vector<uint32_t> cutouts = take_materials(scene);
+    std::vector<bool> used(materials_.size());
+    for (const Mesh& mesh : meshes_)
+        used[mesh.material] = true;
+    const std::vector<uint32_t> cutouts = materials_.add_to(scene, used);
     bool has_triangles = false;
     for (Mesh& m : meshes_) {
         assert(m.normals.size() == (m.has_normals ? m.corners.size() : 0));
@@ -603,7 +484,7 @@ Result<Scene> ObjReader::take() {
             mesh.texture_coordinates_left_out = m.texture_coordinates;
         }
     }
-    say_left_out();
+    materials_.say_left_out(used, source_);
     if (!has_triangles)
         say(log_, LogLevel::Warning, source_.error("it has no triangles").message);
     return scene;

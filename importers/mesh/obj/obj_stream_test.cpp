@@ -14,7 +14,7 @@ constexpr uint64_t kMuch = 1 << 30, kLittle = 64 << 10;
 
 /// Returns so many vertices and as many normals in several pages of memory, one of which is zero
 /// where asked.
-std::string vertices(size_t count, double far = 0, size_t zero_normal = ~size_t(0)) {
+std::string vertex_lines(size_t count, double far = 0, size_t zero_normal = ~size_t(0)) {
     std::string text;
     for (size_t i = 0; i < count; ++i)
         text += fmt::format("v {} {} {}\nvn 0 {} {}\n", far + double(i) / 3, i % 2,
@@ -49,24 +49,24 @@ TEST(ObjStream, GivesTheTrianglesOfAFileThatIsHeld) {
     const TestFolder folder;
     folder.write("a.mtl", "newmtl m0\nKd 1 0 0\nnewmtl m3\nKd 0 0 1\nmap_Kd a.png\nKe 1 1 1\n");
     constexpr size_t kMany = 20'000;
-    const std::string points = vertices(kMany);
+    const std::string points = vertex_lines(kMany);
     const std::string interleaved = points + faces(kMany, kWithNormal, 100);
     const struct {
         const char* name;
         std::string contents;
     } cases[] = {
-        {"none.obj", vertices(3)},
-        {"small.obj", vertices(22) + faces(22, kPlain)},
+        {"none.obj", vertex_lines(3)},
+        {"small.obj", vertex_lines(22) + faces(22, kPlain)},
         {"many.obj", points + faces(kMany, kPlain)},
         {"normals.obj", points + faces(kMany, kWithNormal)},
         {"gz.obj", gzip(points + faces(kMany, kWithNormal))},
-        {"far.obj", vertices(kMany, 1e9) + faces(kMany, kPlain)},
+        {"far.obj", vertex_lines(kMany, 1e9) + faces(kMany, kPlain)},
         {"groups.obj", interleaved},
         {"each_triangle.obj", points + faces(kMany, kWithNormal, 1)},
         {"materials.obj", "mtllib a.mtl\n" + points + faces(kMany, kPlain, 500, "usemtl m{}\n")},
-        {"vertices_between.obj", interleaved + vertices(500) + faces(kMany, kWithNormal, 900)},
+        {"vertices_between.obj", interleaved + vertex_lines(500) + faces(kMany, kWithNormal, 900)},
         {"normals_lost.obj", interleaved + "g 3\nf 1 2 3\n" + faces(kMany, kWithNormal, 900)},
-        {"zero_normal.obj", vertices(kMany, 0, 15'000) + faces(kMany, kWithNormal, 8'000)},
+        {"zero_normal.obj", vertex_lines(kMany, 0, 15'000) + faces(kMany, kWithNormal, 8'000)},
         {"short.obj", points + "f 1 2\nf 1 2 3 4\nline 1 2\n"},
     };
     for (const auto& [name, contents] : cases)
@@ -84,7 +84,7 @@ Error streamed_error(const std::filesystem::path& path, TriangleSink& sink, uint
 
 TEST(ObjStream, ErrorsAreThoseOfAFileThatIsHeld) {
     const TestFolder folder;
-    const std::string points = vertices(9000);
+    const std::string points = vertex_lines(9000);
     for (const char* end : {"f 1 2 9001\n", "f 1 2 0\n", "f 1 2 x\n", "v 1 2\n", "vn 1\n"}) {
         const auto path = folder.write("a.obj", points + faces(9000, kPlain) + end);
         FullSink sink;
@@ -103,7 +103,7 @@ TEST(ObjStream, ErrorsAreThoseOfAFileThatIsHeld) {
 
 TEST(ObjStream, EndsWhereTheSinkWantsNoMore) {
     const TestFolder folder;
-    const auto path = folder.write("a.obj", vertices(60'000) + faces(60'000, kPlain));
+    const auto path = folder.write("a.obj", vertex_lines(60'000) + faces(60'000, kPlain));
     FullSink sink;
     EXPECT_EQ(streamed_error(path, sink, kMuch).kind, ErrorKind::Cancelled);
     EXPECT_EQ(sink.parts, 1);
@@ -111,7 +111,7 @@ TEST(ObjStream, EndsWhereTheSinkWantsNoMore) {
 
 TEST(ObjStream, RefusesMoreMeshesThanTheMemoryHolds) {
     const TestFolder folder;
-    const auto path = folder.write("a.obj", vertices(3) + "g a\nf 1 2 3\ng b\nf 1 2 3\n");
+    const auto path = folder.write("a.obj", vertex_lines(3) + "g a\nf 1 2 3\ng b\nf 1 2 3\n");
     FullSink sink;
     EXPECT_EQ(folder.plain(streamed_error(path, sink, 8000).message),
               "a.obj, line 10: found more than 1 objects, groups and materials, which take 2000 "
@@ -120,7 +120,7 @@ TEST(ObjStream, RefusesMoreMeshesThanTheMemoryHolds) {
 
 TEST(ObjStream, TellsThatTheDiskIsFull) {
     const TestFolder folder;
-    const auto path = folder.write("a.obj", vertices(60'000) + faces(60'000, kWithNormal));
+    const auto path = folder.write("a.obj", vertex_lines(60'000) + faces(60'000, kWithNormal));
     const test::FileSizeLimit limit(300'000);
     FullSink sink;
     sink.wanted = 1000;

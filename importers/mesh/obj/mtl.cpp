@@ -2,7 +2,7 @@
 // The reader of MTL understands newmtl, Kd, Ks, Tf, d, Tr, Ni, illum and the textures of
 // mtl_textures.h.
 // Based on: Wavefront, "MTL material format", version 4.2 (1995).
-#include "importers/mesh/mtl.h"
+#include "importers/mesh/obj/mtl.h"
 
 #include "importers/file/source.h"
 #include "importers/file/text.h"

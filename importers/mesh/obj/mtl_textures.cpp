@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Source: Wavefront, "MTL material format", version 4.2 (1995), "Texture map statements".
-#include "importers/mesh/mtl_textures.h"
+#include "importers/mesh/obj/mtl_textures.h"
 
 #include "core/text/lower_case.h"
 #include "importers/file/picture_path.h"

@@ -31,7 +31,7 @@ MtlTexture parse_mtl_texture(std::string_view keyword, std::string_view rest, ui
 /// Returns whether add_mtl_texture() knows what to do with it.
 bool is_shown(const MtlTexture& texture);
 
-/// What the textures of a material need besides.
+/// A material with what its textures need besides.
 struct MtlMaterial {
     Material& material;
     std::optional<Cutout> cutout; // out: of map_d

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "importers/mesh/obj/obj_materials.h"
+
+#include "importers/file/source.h"
+#include "importers/file/text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace ovc {
+
+Result<Done> ObjMaterials::read_libraries(std::string_view names, bool has_uv, const Warn& warn) {
+    const std::string_view rest = trimmed(without_comment(names));
+    for (const std::string_view name : {names, rest})
+        if (name.find('\\') == name.npos && read_library(name, has_uv))
+            return libraries_done_;
+    std::string name;
+    bool any = false;
+    for (size_t i = 0; i <= rest.size(); ++i) {
+        if (i < rest.size() && rest[i] == '\\' && i + 1 < rest.size() && rest[i + 1] == ' ') {
+            name += rest[++i];
+        } else if (i < rest.size() && !is_blank(rest[i])) {
+            name += rest[i] == '\\' ? '/' : rest[i];
+        } else if (!name.empty()) {
+            any = read_library(name, has_uv) || any;
+            name.clear();
+        }
+    }
+    if (!any)
+        warn("mtllib",
+             fmt::format("no material library {}: its materials become grey", quoted(rest)));
+    return libraries_done_;
+}
+
+bool ObjMaterials::read_library(std::string_view name, bool has_uv) {
+    const std::filesystem::path path = path_.parent_path() / std::string(name);
+    if (libraries_.contains(path.string()))
+        return true;
+    Result<Source> source = Source::open(path, files_read_);
+    if (!source)
+        return false;
+    auto materials = read_mtl(*source, path, log_);
+    if (!materials) {
+        libraries_done_ = materials.error();
+        return true;
+    }
+    any_textures_ = any_textures_ || std::ranges::any_of(*materials, [](const LibraryMaterial& m) {
+                        return !m.shown.empty();
+                    });
+    // Those that were passed over once are not read again, and their indices would not fit.
+    keeps_uv_ = any_textures_ && (keeps_uv_ || !has_uv);
+    libraries_.insert(path.string());
+    for (LibraryMaterial& read : *materials) {
+        const std::string& called = read.material.name;
+        const auto [at, is_new] = numbers_.try_emplace(called, uint32_t(materials_.size()));
+        if (is_new)
+            materials_.emplace_back();
+        else if (materials_[at->second].material != Material{called})
+            continue; // the name is defined; without a definition its usemtl preceded its mtllib
+        materials_[at->second] = std::move(read);
+    }
+    return true;
+}
+
+uint32_t ObjMaterials::find(std::string_view name, const Warn& warn) {
+    if (!numbers_.contains(std::string(name)))
+        name = trimmed(without_comment(name));
+    const auto [at, is_new] = numbers_.try_emplace(std::string(name), uint32_t(materials_.size()));
+    if (is_new) {
+        materials_.push_back({Material{std::string(name)}});
+        warn("usemtl",
+             fmt::format("no material {}: it becomes grey, and so do others that are missing",
+                         quoted(name)));
+    }
+    return at->second;
+}
+
+void ObjMaterials::say_left_out(const std::vector<bool>& used, const Source& source) const {
+    std::vector<std::string> textures, emitters;
+    for (size_t m = 0; m < materials_.size(); ++m) {
+        if (!used[m])
+            continue;
+        for (const std::string& texture : materials_[m].textures)
+            if (std::find(textures.begin(), textures.end(), texture) == textures.end())
+                textures.push_back(texture);
+        if (materials_[m].emits)
+            emitters.push_back(ovc::quoted(materials_[m].material.name));
+    }
+    const auto warn_of = [&](const std::string& sentence) {
+        say(log_, LogLevel::Warning, source.error(sentence).message);
+    };
+    if (!textures.empty())
+        warn_of(fmt::format("{} of its materials left out: {}", counted(textures.size(), "texture"),
+                            listed(textures)));
+    if (!emitters.empty())
+        warn_of(fmt::format("light from {} (Ke) left out: {}", counted(emitters.size(), "material"),
+                            listed(emitters)));
+}
+
+std::vector<uint32_t> ObjMaterials::add_to(Scene& scene, const std::vector<bool>& used) const {
+    std::vector<uint32_t> cutouts(materials_.size(), kNone);
+    for (size_t m = 0; m < materials_.size(); ++m) {
+        const LibraryMaterial& read = materials_[m];
+        Material& material = scene.materials.emplace_back(read.material);
+        MtlMaterial to{material, {}};
+        for (const MtlTexture& texture : read.shown)
+            if (used[m])
+                add_mtl_texture(texture, read.library, scene, to);
+        if (to.cutout) {
+            cutouts[m] = uint32_t(scene.cutouts.size());
+            scene.cutouts.push_back(*to.cutout);
+        }
+    }
+    return cutouts;
+}
+
+} // namespace ovc
