@@ -5,7 +5,7 @@
 #include "core/text/dropped.h"
 #include "core/text/format_text.h"
 #include "plugin/build/level2.h"
-#include "plugin/build/saved_levels.h"
+#include "plugin/build/restored_levels.h"
 
 #include <algorithm>
 #include <cassert>

@@ -2,6 +2,7 @@
 // Meshes that moved and then stay come to rest: no portal leads to them, whatever else changes, and
 // the exact fallback finds what brute force does, after each update and after saving.
 #include "plugin/build/build_scene.h"
+#include "plugin/build/restored_levels.h"
 #include "plugin/build/saved_levels.h"
 #include "plugin/build/update_scene.h"
 #include "plugin/fallback/exact_fallback.h"

@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Saves a scene as bytes that outlive the process, and restores it: level 1 and the pages, and a
-// key of what they were made of.
+// Saves a scene as bytes that outlive the process: level 1 and the pages, and a key of what they
+// were made of. plugin/build/restored_levels.h reads them.
 #pragma once
 
 #include "core/file/archive.h"
-#include "core/file/checksum.h"
-#include "core/result.h"
 #include "plugin/build/built_scene.h"
+#include "plugin/build/levels_format.h"
 #include "plugin/leaf_store/corner_sums.h"
-#include "plugin/leaf_store/leaf_store.h"
 
-#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -35,23 +32,6 @@ struct LevelsKey {
     /// Whether levels are good under other limits too, where the host asks for none itself: it
     /// takes longer to build them again than leaves of another size save.
     bool any_limits = false;
-};
-
-/// A leaf as it is saved.
-struct SavedLeaf {
-    Box cell;
-    Box box;
-    Box grid;
-    dvec3 origin{0};
-    double scale = 1;
-    uint64_t triangles = 0; // so many of the part "lists", behind those of the leaves before
-};
-static_assert(sizeof(SavedLeaf) == 23 * 8);
-
-struct SavedPage {
-    uint64_t texels = 0;
-    uint64_t depth = 0;
-    uint64_t checksum = 0; // so that the page can be read by itself
 };
 
 SavedLeaf saved_leaf(const Leaf& leaf);
@@ -87,27 +67,7 @@ private:
 /// Passes the scene on to the sink, front to back. Returns false where the sink wanted no more.
 bool save_levels(const BuiltScene& scene, const ByteSink& sink);
 
-/// Returns the scene that save_levels() wrote of this soup; nothing where the bytes are of another
-/// soup, or where a build would now make another scene. limits_for(triangles, unique): as
-/// limits_of(). takes_any_limits: LevelsKey::any_limits counts. Lists and pages stay in `saved`,
-/// which must outlive them. Whatever the bytes are, the scene that comes back is safe to walk.
-/// Error: the bytes are damaged, not aligned to kPartAlignment, or no saved levels; the sentence
-/// goes on from a name.
-Result<std::optional<BuiltScene>>
-restore_levels(Bytes saved, const Soup& soup,
-               const std::function<LeafLimits(uint64_t, uint64_t)>& limits_for,
-               bool takes_any_limits = false);
-
-/// Opens the levels that the store reads, for a soup of the store's meshes. Pages and lists stay on
-/// the disk, and limits do not matter. Error: as of restore_levels(); they are of other meshes; or
-/// of the kind OverBudget, where it names the smallest budget of the store that works.
-Result<BuiltScene> open_stored_levels(LeafStore& store, const Soup& soup);
-
-/// Does the same whatever the budget, for a plan: the store gives no page, but knows what it would
-/// keep.
-Result<BuiltScene> look_at_stored_levels(LeafStore& store, const Soup& soup);
-
-/// What the number of bytes of saved levels depends on.
+/// The number of bytes of saved levels depends on these.
 struct LevelsSize {
     uint64_t page_bytes = 0;
     uint64_t references = 0;

@@ -5,6 +5,7 @@
 
 #include "core/file/test_archive.h"
 #include "kdtree/test_soups.h"
+#include "plugin/build/restored_levels.h"
 #include "plugin/build/same_levels_test.h"
 #include "tests/fuzz/levels.h"
 

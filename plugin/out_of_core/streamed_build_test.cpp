@@ -7,6 +7,7 @@
 #include "core/system/parallel.h"
 #include "kdtree/test_soups.h"
 #include "plugin/build/build_scene.h"
+#include "plugin/build/restored_levels.h"
 #include "plugin/build/same_levels_test.h"
 #include "plugin/build/saved_levels.h"
 #include "plugin/fallback/exact_fallback.h"

@@ -9,7 +9,7 @@
 #include "kdtree/sample.h"
 #include "plugin/build/build_scene.h"
 #include "plugin/build/level2.h"
-#include "plugin/build/saved_levels.h"
+#include "plugin/build/restored_levels.h"
 #include "plugin/plan/level_sizes.h"
 #include "plugin/plan/one_leaf.h"
 

@@ -6,6 +6,8 @@
 #include "core/file/test_archive.h"
 #include "kdtree/test_soups.h"
 #include "plugin/build/level2.h"
+#include "plugin/build/restored_levels.h"
+#include "plugin/build/saved_levels.h"
 #include "plugin/fallback/exact_fallback.h"
 #include "plugin/leaf_store/leaf_store.h"
 #include "tests/fuzz/require.h"

@@ -2,7 +2,7 @@
 // The fuzzer and the tests of saved levels restore damaged levels and trace rays through them.
 #pragma once
 
-#include "plugin/build/saved_levels.h"
+#include "plugin/build/built_scene.h"
 
 #include <cstddef>
 #include <cstdint>
