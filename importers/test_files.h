@@ -3,6 +3,7 @@
 #pragma once
 
 #include "importers/importer.h"
+#include "tests/temp_folder.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +13,6 @@
 #include <string>
 #include <vector>
 
-#include <unistd.h>
 #include <zlib.h>
 
 namespace ovc {
@@ -28,33 +28,12 @@ inline std::vector<std::string> contents_of(const std::filesystem::path& folder)
     return contents;
 }
 
-/// A folder of one test process, which the destructor removes.
-class TestFolder {
+/// A folder whose files are loaded.
+class TestFolder : public test::TempFolder {
 public:
-    TestFolder()
-        : path_(std::filesystem::path(testing::TempDir()) /
-                ("overcast-importers-" + std::to_string(getpid()))) {
-        std::filesystem::create_directories(path_);
-    }
-    ~TestFolder() { std::filesystem::remove_all(path_); }
-    TestFolder(const TestFolder&) = delete;
-    TestFolder& operator=(const TestFolder&) = delete;
-
-    std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-
-    std::filesystem::path write(const std::string& name, const std::string& contents) const {
-        std::ofstream(path_ / name, std::ios::binary) << contents;
-        return path_ / name;
-    }
-
-    std::string read(const std::string& name) const {
-        std::ifstream file(path_ / name, std::ios::binary);
-        return {std::istreambuf_iterator<char>(file), {}};
-    }
-
     /// Returns an error's message without the folder, so that it is the same in every run.
     std::string plain(std::string message) const {
-        const std::string prefix = path_.string() + "/";
+        const std::string prefix = (*this / "").string();
         for (size_t at; (at = message.find(prefix)) != message.npos;)
             message.erase(at, prefix.size());
         return message;
@@ -62,14 +41,11 @@ public:
 
     /// Returns load()'s message, or how many triangles it gave if it should have failed.
     std::string failure(const std::string& name) const {
-        const auto scene = load(path_ / name);
+        const auto scene = load(*this / name);
         if (scene)
             return std::to_string(scene->soup.triangle_count()) + " triangles";
         return plain(scene.error().message);
     }
-
-private:
-    std::filesystem::path path_;
 };
 
 inline std::string gzip(const std::string& text) {

@@ -2,6 +2,7 @@
 // Tests of the command as a whole, on the CPU: what it writes, and that an error writes nothing.
 #include "host/command/command.h"
 #include "host/terminal/interrupt.h"
+#include "tests/temp_folder.h"
 #include "testscenes/catalog.h"
 
 #include <fmt/format.h>
@@ -13,9 +14,7 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
-#include <iterator>
 #include <thread>
-#include <unistd.h>
 
 namespace ovc {
 
@@ -23,14 +22,6 @@ namespace fs = std::filesystem;
 
 class CommandTest : public testing::Test {
 protected:
-    void SetUp() override {
-        const testing::TestInfo* test = testing::UnitTest::GetInstance()->current_test_info();
-        folder_ = fs::temp_directory_path() /
-                  ("overcast_" + std::string(test->name()) + "_" + std::to_string(getpid()));
-        fs::create_directories(folder_);
-    }
-    void TearDown() override { fs::remove_all(folder_); }
-
     std::string path(const char* name) const { return (folder_ / name).string(); }
 
     /// Returns the sentence with which the command fails; empty when it does not fail.
@@ -39,12 +30,9 @@ protected:
         return code ? "" : code.error().message;
     }
 
-    std::string bytes(const char* name) const {
-        std::ifstream file(path(name), std::ios::binary);
-        return {std::istreambuf_iterator<char>(file), {}};
-    }
+    std::string bytes(const char* name) const { return folder_.read(name); }
 
-    fs::path folder_;
+    test::TempFolder folder_;
 };
 
 TEST_F(CommandTest, RendersATestSceneToTwoFilesAndStatistics) {
@@ -227,12 +215,12 @@ std::vector<Refused> refused_arguments(const std::string& folder,
 
 TEST_F(CommandTest, AnErrorIsOneSentenceAndWritesNothing) {
     const auto cases =
-        refused_arguments(folder_.string(), [&](const char* name) { return path(name); });
+        refused_arguments(fs::path(folder_).string(), [&](const char* name) { return path(name); });
     for (const auto& c : cases) {
         const std::string sentence = error(c.arguments);
         EXPECT_THAT(sentence, testing::HasSubstr(c.part));
         EXPECT_THAT(sentence, testing::Not(testing::HasSubstr("\n")));
-        EXPECT_TRUE(fs::is_empty(folder_)) << c.part;
+        EXPECT_TRUE(folder_.file_count() == 0) << c.part;
     }
 }
 

@@ -5,14 +5,13 @@
 #include "host/command/command.h"
 #include "host/terminal/interrupt.h"
 #include "tests/file_size_limit.h"
+#include "tests/temp_folder.h"
 
 #include <gmock/gmock.h>
 
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <string>
-#include <unistd.h>
 
 namespace ovc {
 namespace {
@@ -22,15 +21,12 @@ namespace fs = std::filesystem;
 class ConvertUnderABudget : public testing::Test {
 protected:
     void SetUp() override {
-        folder_ = fs::temp_directory_path() / ("overcast_convert_" + std::to_string(getpid()));
-        fs::create_directories(folder_);
         testing::internal::CaptureStdout();
         const bool has_device = bool(run_command({"devices"}));
         testing::internal::GetCapturedStdout();
         if (!has_device)
             GTEST_SKIP() << "no device for the plugin";
     }
-    void TearDown() override { fs::remove_all(folder_); }
 
     std::string path(const std::string& name) const { return (folder_ / name).string(); }
 
@@ -39,10 +35,7 @@ protected:
         return code ? "" : code.error().message;
     }
 
-    std::string bytes(const std::string& name) const {
-        std::ifstream file(path(name), std::ios::binary);
-        return {std::istreambuf_iterator<char>(file), {}};
-    }
+    std::string bytes(const std::string& name) const { return folder_.read(name); }
 
     /// Renders a scene and returns the bytes of its picture.
     std::string picture(const std::string& scene, const std::string& gpu_memory = "64M") const {
@@ -52,11 +45,7 @@ protected:
         return bytes("picture.png");
     }
 
-    size_t files() const {
-        return size_t(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
-    }
-
-    fs::path folder_;
+    test::TempFolder folder_;
 };
 
 TEST_F(ConvertUnderABudget, PicturesAreThoseOfTheSource) {
@@ -169,7 +158,7 @@ TEST_F(ConvertUnderABudget, ErrorsAreSentencesAndLeaveNothing) {
         Arguments all{"convert"};
         all.insert(all.end(), arguments.begin(), arguments.end());
         EXPECT_THAT(error(all), testing::HasSubstr(sentence));
-        EXPECT_EQ(files(), 1u) << sentence;
+        EXPECT_EQ(folder_.file_count(), 1u) << sentence;
     }
 }
 
@@ -183,7 +172,7 @@ TEST_F(ConvertUnderABudget, AFullDiskIsASentenceAndLeavesNothing) {
                         testing::EndsWith("File too large"))
                 << most;
         }
-        EXPECT_EQ(files(), 1u) << most;
+        EXPECT_EQ(folder_.file_count(), 1u) << most;
     }
 }
 

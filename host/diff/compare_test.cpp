@@ -3,6 +3,7 @@
 #include "host/diff/compare.h"
 
 #include "host/diff/verdict.h"
+#include "tests/temp_folder.h"
 
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFrameBuffer.h>
@@ -13,12 +14,10 @@
 
 #include <bit>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <limits>
+#include <string>
 #include <sys/stat.h>
 #include <thread>
-#include <unistd.h>
 
 namespace ovc {
 namespace {
@@ -143,9 +142,7 @@ TEST(Compare, IsJudgedAsIdiffDoes) {
 }
 
 TEST(Compare, ReadsWhatWasWritten) {
-    const std::filesystem::path folder =
-        std::filesystem::temp_directory_path() / ("overcast_compare_" + std::to_string(getpid()));
-    std::filesystem::create_directories(folder);
+    const test::TempFolder folder;
     Image image(2, 2);
     image.pixels = {vec4(0, 0.25f, 1, 1), vec4(2), vec4(-1, 0, 0, 0.5f), vec4(0.1f)};
     const Layer id{"id.prim", Layer::Type::Uint, {7, 8, 9, 0xffffffff}};
@@ -163,17 +160,13 @@ TEST(Compare, ReadsWhatWasWritten) {
     encode_srgb(*exr);
     EXPECT_LT(compare(*exr, *png).layers.at(0).errors->max, 1.0 / 65535)
         << "linear light as codes, clamped as the file is";
-    std::filesystem::remove_all(folder);
 }
 
 TEST(Compare, ReadsPipes) {
-    const std::filesystem::path folder =
-        std::filesystem::temp_directory_path() / ("overcast_pipes_" + std::to_string(getpid()));
-    std::filesystem::create_directories(folder);
+    const test::TempFolder folder;
     for (const char* name : {"a.exr", "a.png"}) {
         ASSERT_TRUE(save_image(Image(400, 300), folder / name));
-        std::ifstream in(folder / name, std::ios::binary);
-        const std::string whole((std::istreambuf_iterator<char>(in)), {});
+        const std::string whole = folder.read(name);
         const std::filesystem::path pipe = folder / (std::string("pipe_") + name);
         ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
         std::thread writer([&] { std::ofstream(pipe, std::ios::binary) << whole; });
@@ -182,12 +175,11 @@ TEST(Compare, ReadsPipes) {
         ASSERT_TRUE(read) << read.error().message;
         EXPECT_EQ(read->size(), 120000u);
     }
-    std::filesystem::remove_all(folder);
 }
 
 TEST(Compare, KnowsWhereAPartOfAPictureBegins) {
-    const std::filesystem::path path =
-        std::filesystem::temp_directory_path() / ("overcast_part_" + std::to_string(getpid()));
+    const test::TempFolder folder;
+    const std::filesystem::path path = folder / "part.exr";
     Imf::Header header(Imath::Box2i({10, 20}, {109, 119}), Imath::Box2i({30, 50}, {33, 51}));
     header.channels().insert("R", Imf::Channel(Imf::FLOAT));
     {
@@ -202,20 +194,16 @@ TEST(Compare, KnowsWhereAPartOfAPictureBegins) {
     ASSERT_TRUE(part) << part.error().message;
     EXPECT_EQ(part->x, 20);
     EXPECT_EQ(part->y, 30);
-    std::filesystem::remove(path);
 }
 
 TEST(Compare, DamagedFilesAreRefused) {
-    const std::filesystem::path folder =
-        std::filesystem::temp_directory_path() / ("overcast_damaged_" + std::to_string(getpid()));
-    std::filesystem::create_directories(folder);
+    const test::TempFolder folder;
     for (const char* name : {"a.exr", "a.png"}) {
         ASSERT_TRUE(save_image(Image(40, 30), folder / name));
-        std::ifstream in(folder / name, std::ios::binary);
-        const std::string whole((std::istreambuf_iterator<char>(in)), {});
+        const std::string whole = folder.read(name);
         for (size_t length = 0; length + 12 < whole.size(); ++length) {
-            std::ofstream(folder / "cut", std::ios::binary) << whole.substr(0, length);
-            const Result<Channels> cut = read_channels(folder / "cut");
+            const Result<Channels> cut =
+                read_channels(folder.write("cut", whole.substr(0, length)));
             ASSERT_FALSE(cut) << name << ", " << length;
             EXPECT_THAT(cut.error().message, testing::HasSubstr("cut: "));
         }
@@ -223,7 +211,6 @@ TEST(Compare, DamagedFilesAreRefused) {
     EXPECT_THAT(read_channels(folder / "none.png").error().message,
                 testing::HasSubstr("none.png: cannot be read: No such file"));
     EXPECT_THAT(read_channels(folder).error().message, testing::HasSubstr("found a directory"));
-    std::filesystem::remove_all(folder);
 }
 
 } // namespace

@@ -4,6 +4,7 @@
 
 #include "core/exact/triangle.h"
 #include "host/camera/camera.h"
+#include "tests/temp_folder.h"
 #include "testscenes/catalog.h"
 
 #include <OpenEXR/ImfChannelList.h>
@@ -14,8 +15,7 @@
 
 #include <bit>
 #include <cmath>
-#include <filesystem>
-#include <unistd.h>
+#include <string>
 
 namespace ovc {
 namespace {
@@ -64,9 +64,8 @@ TEST(Aovs, OfAFileAreWhatEachPixelsRayHits) {
                                    Sight(*scene), *backend, aovs);
     ASSERT_TRUE(layers);
     ASSERT_EQ(layers->size(), 6u);
-    const std::string path =
-        (std::filesystem::temp_directory_path() / ("aov" + std::to_string(getpid()) + ".exr"))
-            .string();
+    const test::TempFolder folder;
+    const std::string path = (folder / "aov.exr").string();
     ASSERT_TRUE(save_image(Image(kLayerWidth, kLayerHeight), path, {.layers = *layers}));
     const auto depth = channel(path, "depth.Z", Imf::FLOAT);
     const auto mesh = channel(path, "id.mesh", Imf::UINT),
@@ -74,7 +73,6 @@ TEST(Aovs, OfAFileAreWhatEachPixelsRayHits) {
     const std::vector<uint32_t> normal[3] = {channel(path, "normal.X", Imf::FLOAT),
                                              channel(path, "normal.Y", Imf::FLOAT),
                                              channel(path, "normal.Z", Imf::FLOAT)};
-    std::filesystem::remove(path);
 
     const Pinhole pinhole(camera, kLayerWidth, kLayerHeight);
     size_t hit = 0, missed = 0;

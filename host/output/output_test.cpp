@@ -3,6 +3,7 @@
 #include "host/output/output.h"
 
 #include "host/diff/channels.h"
+#include "tests/temp_folder.h"
 
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfInputFile.h>
@@ -12,9 +13,8 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <fstream>
-#include <iterator>
-#include <unistd.h>
+#include <filesystem>
+#include <string>
 
 namespace ovc {
 
@@ -22,30 +22,14 @@ namespace fs = std::filesystem;
 
 class Output : public testing::Test {
 protected:
-    void SetUp() override {
-        const testing::TestInfo* test = testing::UnitTest::GetInstance()->current_test_info();
-        folder_ = fs::temp_directory_path() /
-                  ("overcast_" + std::string(test->name()) + "_" + std::to_string(getpid()));
-        fs::create_directories(folder_);
-    }
-    void TearDown() override { fs::remove_all(folder_); }
-
-    std::string text_of(const fs::path& path) const {
-        std::ifstream file(path, std::ios::binary);
-        return {std::istreambuf_iterator<char>(file), {}};
-    }
-    size_t file_count() const {
-        return size_t(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
-    }
-
-    fs::path folder_;
+    test::TempFolder folder_;
 };
 
 TEST_F(Output, ReplacesAFileWhole) {
     ASSERT_TRUE(save_text("old", folder_ / "a.json"));
     ASSERT_TRUE(save_text("new", folder_ / "a.json"));
-    EXPECT_EQ(text_of(folder_ / "a.json"), "new");
-    EXPECT_EQ(file_count(), 1u);
+    EXPECT_EQ(folder_.read("a.json"), "new");
+    EXPECT_EQ(folder_.file_count(), 1u);
 }
 
 TEST_F(Output, LeavesLinksAndDevicesWhatTheyAre) {
@@ -55,9 +39,9 @@ TEST_F(Output, LeavesLinksAndDevicesWhatTheyAre) {
     ASSERT_TRUE(save_image(Image(2, 2), folder_ / "link.png"));
     ASSERT_TRUE(save_image(Image(2, 2), folder_ / "null.exr"));
     EXPECT_TRUE(fs::is_symlink(folder_ / "link.png"));
-    EXPECT_EQ(text_of(folder_ / "real.png").substr(1, 3), "PNG");
+    EXPECT_EQ(folder_.read("real.png").substr(1, 3), "PNG");
     EXPECT_TRUE(fs::is_character_file("/dev/null"));
-    EXPECT_EQ(file_count(), 3u);
+    EXPECT_EQ(folder_.file_count(), 3u);
 }
 
 TEST_F(Output, NoTwoFilesAreTheSame) {
@@ -97,14 +81,14 @@ static Image unpleasant_image() {
 TEST_F(Output, WritesBothFormatsTheSameEveryTime) {
     for (const char* name : {"a.png", "a.exr"}) {
         ASSERT_TRUE(save_image(unpleasant_image(), folder_ / name));
-        const std::string first = text_of(folder_ / name);
+        const std::string first = folder_.read(name);
         ASSERT_TRUE(save_image(unpleasant_image(), folder_ / name));
-        EXPECT_EQ(text_of(folder_ / name), first);
+        EXPECT_EQ(folder_.read(name), first);
         EXPECT_GT(first.size(), 50u);
     }
-    EXPECT_EQ(text_of(folder_ / "a.png").substr(1, 3), "PNG");
-    EXPECT_EQ(text_of(folder_ / "a.exr").substr(0, 4), "\x76\x2f\x31\x01");
-    EXPECT_EQ(file_count(), 2u);
+    EXPECT_EQ(folder_.read("a.png").substr(1, 3), "PNG");
+    EXPECT_EQ(folder_.read("a.exr").substr(0, 4), "\x76\x2f\x31\x01");
+    EXPECT_EQ(folder_.file_count(), 2u);
 }
 
 TEST_F(Output, NeedsAFewRowsAtOnce) {

@@ -4,6 +4,7 @@
 
 #include "core/file/mapped_file.h"
 #include "importers/file/output_file.h"
+#include "tests/temp_folder.h"
 
 #include <gtest/gtest.h>
 
@@ -19,15 +20,9 @@ namespace fs = std::filesystem;
 
 class InterruptDeathTest : public testing::Test {
 protected:
-    void SetUp() override {
-        testing::FLAGS_gtest_death_test_style = "fast";
-        std::string name = fs::temp_directory_path() / "overcast_interrupt_XXXXXX";
-        ASSERT_NE(mkdtemp(name.data()), nullptr);
-        folder_ = name;
-    }
-    void TearDown() override { fs::remove_all(folder_); }
+    void SetUp() override { testing::FLAGS_gtest_death_test_style = "fast"; }
 
-    fs::path folder_;
+    test::TempFolder folder_;
 };
 
 TEST_F(InterruptDeathTest, TheFirstOnlyAsks) {
