@@ -101,11 +101,4 @@ Result<Done> save(const Scene& scene, const std::filesystem::path& path) {
     return format->write(scene, path);
 }
 
-std::vector<std::string> own_extensions() {
-    std::vector<std::string> extensions;
-    for (const Format& format : kFormats)
-        extensions.emplace_back(format.extension);
-    return extensions;
-}
-
 } // namespace ovc

@@ -25,7 +25,7 @@ inline constexpr uint64_t kDefaultMostTriangles = 100'000'000;
 /// circle is an octagon.
 inline constexpr double kMinTolerance = 1e-4, kMaxTolerance = 0.5;
 
-/// Where the triangles of a scene go that is not to be held in memory.
+/// The sink for the triangles of a scene that is not to be held in memory.
 struct Streaming {
     TriangleSink& sink;
     uint64_t host_bytes;               // that reading may take
@@ -88,8 +88,5 @@ Result<Done> save(const Scene& scene, const std::filesystem::path& path);
 
 /// Returns whether load() may give other scenes for other moments, as far as the name tells.
 bool may_move(const std::filesystem::path& path);
-
-/// Returns the extensions that load() reads without Assimp, without the dot ("ply", "obj").
-std::vector<std::string> own_extensions();
 
 } // namespace ovc

@@ -77,7 +77,6 @@ protected:
         return time.begin_of(answer.first_t());
     }
 
-    static constexpr Ray kNoRay{dvec3(0), 0, dvec3(0, 0, 1), -1};
     bool with_host_pages = true; // if the device takes them
     std::unique_ptr<Tracer> tracer;
     std::list<Answers> traced;

@@ -12,8 +12,7 @@
 #include "host/render/render_mixed.h"
 #include "host/shade/path_tracer.h"
 #include "host/shade/whitted.h"
-
-#include <sys/resource.h>
+#include "host/terminal/process_cost.h"
 
 #include <algorithm>
 #include <cassert>
@@ -61,16 +60,6 @@ RenderReport& RenderReport::operator+=(const RenderReport& other) {
     pixels_done += other.pixels_done;
     failed = failed || other.failed;
     return *this;
-}
-
-/// Returns the CPU time of all threads, in user and in system mode.
-static double cpu_seconds() {
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    const auto seconds = [](const timeval& time) {
-        return double(time.tv_sec) + 1e-6 * double(time.tv_usec);
-    };
-    return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
 /// seed: of path tracing, instead of that of the options. bounced: null, or outlives the
@@ -285,7 +274,7 @@ Result<RenderReport> render_picture(const Scene& scene, const Camera& camera, Ba
                                     const RenderOptions& options, const RenderObserver& observe,
                                     Film& film) {
     const Stopwatch watch;
-    const double cpu_before = cpu_seconds();
+    const double cpu_before = process_cpu_seconds();
     Tracing tracing(scene, camera, backend, options, film);
     if (const Result<Done> prepared = tracing.prepare(); !prepared)
         return prepared.error();
@@ -294,7 +283,7 @@ Result<RenderReport> render_picture(const Scene& scene, const Camera& camera, Ba
         return report;
     report->pixels_done = film.pixels_done();
     report->seconds = watch.seconds();
-    report->seconds_cpu = cpu_seconds() - cpu_before;
+    report->seconds_cpu = process_cpu_seconds() - cpu_before;
     return report;
 }
 

@@ -284,7 +284,7 @@ Result<StreamedLevels> save_in_memory(TriangleSource& source, const TwoLevelOpti
         return scene.error();
     if (!save_levels(*scene, sink))
         throw Cancelled();
-    return StreamedLevels{scene->pages.size(), scene->triangles, 0, false};
+    return StreamedLevels{scene->pages.size(), scene->triangles, false};
 }
 
 } // namespace

@@ -138,7 +138,7 @@ Result<StreamedLevels> StreamedLevelsWriter::finish(const LevelsKey& key, const 
     const uint64_t triangles = hittable - duplicates_.size();
     const LevelsCut cut{dropped, duplicates_, level1, leaves, triangles};
     writer_.finish(key, std::span(&cut, 1));
-    return StreamedLevels{leaves, triangles, scratch_.bytes(), true};
+    return StreamedLevels{leaves, triangles, true};
 }
 
 } // namespace ovc

@@ -14,11 +14,10 @@
 
 namespace ovc {
 
-/// What was built.
+/// The size of levels that were built.
 struct StreamedLevels {
     uint64_t leaves = 0;
-    uint64_t triangles = 0; // in leaves, each counted once
-    uint64_t scratch_bytes = 0;
+    uint64_t triangles = 0;    // in leaves, each counted once
     bool was_streamed = false; // else it was built in memory
 };
 
@@ -45,7 +44,7 @@ private:
         uint64_t triangles;
         uint64_t checksum;
     };
-    /// Where a leaf lies that has been written, and all else that is known of it.
+    /// The place of a leaf that has been written, and all else that is known of it.
     struct KeptLeaf {
         SavedLeaf leaf;
         SavedPage page;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Translation, scale, rotation and view as 4x4 matrices.
+// Rotation and view as 4x4 matrices.
 #include "importers/pbrt/interpret/transform.h"
 
 #include <cassert>
@@ -7,19 +7,6 @@
 #include <numbers>
 
 namespace ovc::pbrt {
-
-dmat4 translation(const dvec3& by) {
-    dmat4 m(1);
-    m[3] = glm::dvec4(by, 1);
-    return m;
-}
-
-dmat4 scaling(const dvec3& by) {
-    dmat4 m(1);
-    for (int axis = 0; axis < 3; ++axis)
-        m[axis][axis] = by[axis];
-    return m;
-}
 
 /// Quarter turns are exact, so that floors stay level.
 static dvec2 cosine_and_sine(double degrees) {

@@ -2,14 +2,12 @@
 // Transforms as PBRT composes them: 4x4 in double, column vectors.
 #pragma once
 
-#include "core/vec.h"
+#include "importers/matrix.h"
 
 #include <span>
 
 namespace ovc::pbrt {
 
-dmat4 translation(const dvec3& by);
-dmat4 scaling(const dvec3& by);
 /// Returns a rotation by `degrees` round `axis`, of any length above 0; the identity if the axis
 /// has no length or a number is not finite.
 dmat4 rotation(double degrees, const dvec3& axis);

@@ -9,19 +9,6 @@
 
 namespace ovc::pov {
 
-dmat4 translation(const dvec3& by) {
-    dmat4 m(1);
-    m[3] = dvec4(by, 1);
-    return m;
-}
-
-dmat4 scaling(const dvec3& by) {
-    dmat4 m(1);
-    for (int i = 0; i < 3; ++i)
-        m[i][i] = by[i];
-    return m;
-}
-
 /// Returns the sine and the cosine, which are exact for multiples of 90 degrees.
 static dvec2 sine_and_cosine(double degrees) {
     const double turns = degrees / 90;

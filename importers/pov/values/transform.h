@@ -2,14 +2,13 @@
 // Reads translate, rotate, scale, matrix and transform as matrices M that take a point p to M p.
 #pragma once
 
+#include "importers/matrix.h"
 #include "importers/pov/values/expression.h"
 
 #include <array>
 
 namespace ovc::pov {
 
-dmat4 translation(const dvec3& by);
-dmat4 scaling(const dvec3& by);
 /// Returns the rotation about x, then y, then z. It is exact for multiples of 90 degrees.
 dmat4 rotation(const dvec3& degrees);
 /// Returns the rotation about an axis of any length; about 0 it rotates nothing.
