@@ -13,7 +13,7 @@ namespace ovc {
 /// The picture covers the unit square of texture coordinates, its first row at v = 1. A hit counts
 /// by the opacity of the place: never where that is 0, always from 1 on.
 struct Cutout {
-    /// What lies beyond the unit square: the picture again, its rim, or a hole.
+    /// The space beyond the unit square has the picture again, its rim, or a hole.
     enum class Beyond : uint8_t { Repeat, Clamp, Hole };
 
     uint32_t width = 0;

@@ -271,7 +271,7 @@ struct Light {
     bool faces_places = false;
     /// The lights that are points of one area light, and stand side by side; 1: it is a point.
     uint32_t area_points = 1;
-    /// What is nearer to the light than this throws no shadow, such as what it lies on.
+    /// Surfaces nearer to the light than this throw no shadow, such as the one that it lies on.
     double clearance = 0;
     uint32_t group = kNone; // of lights and meshes; kNone: shines on all that LitBy lets it
     /// An object that is not seen, as POV-Ray's projected_through: only light whose way goes

@@ -206,7 +206,7 @@ struct Dropped {
     uint64_t total() const { return not_finite + degenerate; }
 };
 
-/// What is found in some triangles: how many can never be hit, and the box of the others.
+/// A look at some triangles: how many can never be hit, and the box of the others.
 struct Survey {
     Dropped dropped;
     Box bounds;

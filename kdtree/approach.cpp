@@ -54,7 +54,7 @@ dvec3 main_direction(const dvec3& dir) {
 }
 
 bool is_near(const PreparedRay& p, const Box& bounds) {
-    // Else products of a direction or a t with lengths may leave the range of doubles.
+    // Otherwise products of a direction or a t with lengths may leave the range of doubles.
     const double longest = std::abs(p.ray.dir[p.kz]);
     if (longest < 0x1p-500 || longest > 0x1p500)
         return false;

@@ -27,7 +27,7 @@ TEST(FarSearch, FindsThoseThatReachBeyondAllOthers) {
     EXPECT_THAT(search.found(), ElementsAre(TriangleId{0, 1}));
     search.add({1, 0}, box_of_size(100));
     EXPECT_THAT(search.found(), ElementsAre(TriangleId{0, 1}, TriangleId{1, 0}));
-    // What lies apart makes the box of all others larger.
+    // A triangle that lies apart makes the box of all others larger.
     search.add({2, 0}, {dvec3(49), dvec3(50)});
     EXPECT_THAT(search.found(), ElementsAre(TriangleId{0, 1}));
 }

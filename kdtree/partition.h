@@ -111,7 +111,7 @@ inline bool far_leaf_pays(uint64_t far, uint64_t all, uint64_t max_leaf_triangle
     return far > 0 && far <= max_leaf_triangles && far <= all / 64;
 }
 
-/// Which leaves may lie in no cell.
+/// Leaves that may lie in no cell.
 struct FarLeaves {
     bool allowed = false; // rays come to such leaves
     /// The triangles that are to be in one, sorted (far_search.h). Where there are none,

@@ -56,7 +56,7 @@ public:
     }
 
 private:
-    /// Where the finer ring begins, in both directions.
+    /// The place where the finer ring begins, in both directions.
     static constexpr int kInner = kCells / 2;
 
     dvec3 point(double x, double z) const {

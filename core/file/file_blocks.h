@@ -21,7 +21,7 @@ inline constexpr uint64_t blocks_of(uint64_t records) {
     return (records + kBlockRecords - 1) / kBlockRecords;
 }
 
-/// What reading takes, for all FileBlocks of a file.
+/// Reads for all FileBlocks of a file.
 struct BlockReader {
     ReadBytes read;
     BlockCache cache;

@@ -52,7 +52,7 @@ TEST_F(ReplaceFile, LeavesTheNewBytesAndNoOtherFile) {
 }
 
 TEST_F(ReplaceFile, IsWholeWhileManyReplaceIt) {
-    // Of several pages, and of other lengths, so that what is cut or mixed is seen.
+    // The texts have several pages and other lengths, so that one that is cut or mixed is seen.
     const auto text_of = [](char writer) { return std::string(10'000 + size_t(writer), writer); };
     ASSERT_TRUE(replace(text_of('a')));
     std::atomic<bool> ends{false};

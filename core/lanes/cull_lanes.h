@@ -16,7 +16,7 @@ struct CullLanes {
 
     alignas(64) double corner[3][3][kCount]; // [corner][axis][lane]
     alignas(64) long long key[kCount];       // names, in the order in which equal t is decided
-    /// What cull() fills in: a lane that it leaves probably comes the earlier the less this is.
+    /// Filled in by cull(): a lane that it leaves probably comes the earlier the less this is.
     alignas(64) double lead[kCount];
 };
 

@@ -17,7 +17,7 @@ namespace ovc {
 /// from corner a.
 struct FarTriangle {
     double a[3];
-    double normal[3]; // of length 1, but for roundings
+    double normal[3]; // of length 1, apart from roundings
     double lo, hi;    // of the products of the corners with it
     /// The weight of corner b or c at a point of the plane is its product with this.
     double to_b[3], to_c[3];
@@ -55,7 +55,7 @@ struct FarMeeting {
 FarMeeting meet_far(std::span<const FarTriangle> triangles, const RayLanes& rays,
                     const uint32_t* skip);
 
-/// As ways_to_look_ahead().
+/// Returns the functions in the order of ways_to_look_ahead().
 using MeetFar = FarMeeting (*)(std::span<const FarTriangle>, const RayLanes&, const uint32_t*);
 std::vector<MeetFar> ways_to_meet_far();
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What rays meet of far triangles is held against exact arithmetic.
+// Compares the hits of rays at far triangles with exact arithmetic.
 #include "core/lanes/far_triangle.h"
 
 #include "tests/exact.h"

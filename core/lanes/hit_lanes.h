@@ -43,12 +43,12 @@ struct HitLanes : MeetingLanes {
     static constexpr int kT = 1, kU = 2, kV = 4, kAll = kT | kU | kV;
 
     alignas(64) double t[kCount], u[kCount], v[kCount];
-    /// Which of t, u and v are the exact values, rounded to nearest. Of the others not even this
+    /// Those of t, u and v that are the exact values, rounded to nearest. For others not even this
     /// precision tells how they round.
     alignas(64) long long known[kCount];
 };
 
-/// Where rays meet the planes of their triangles.
+/// The points where rays meet the planes of their triangles.
 struct SolutionLanes {
     static constexpr int kCount = MeetingLanes::kCount;
     using Number = double[3][kCount]; // the two parts of the number, and a bound of its error

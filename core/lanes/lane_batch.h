@@ -26,7 +26,7 @@ public:
         lanes_.set(count_, ray, triangle);
         entries_[size_t(count_++)] = entry;
     }
-    /// The same for one of many rays and a triangle of a soup.
+    /// Does the same for one of many rays and a triangle of a soup.
     void add(const RaySpan& rays, size_t i, const Soup& soup, TriangleId id, const Entry& entry) {
         assert(!full() && soup.has(id));
         const size_t lane = size_t(count_++);
@@ -47,7 +47,7 @@ public:
     }
 
 private:
-    // What is not in use is not written: most batches live for a few pairs.
+    // Lanes that are not in use are not written: most batches live for a few pairs.
     Lanes lanes_;
     std::array<Entry, Lanes::kCount> entries_;
     RayRoom<Lanes::kCount> room_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the sources of all functions by lanes share. Everything here is inlined into the file that
+// The sources of all functions by lanes share this. Everything here is inlined into the file that
 // is compiled for a width of vectors: see hit_lanes_kernel.h.
 #pragma once
 

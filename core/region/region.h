@@ -13,7 +13,7 @@
 
 namespace ovc {
 
-/// Where a line meets a triangle.
+/// The point where a line meets a triangle.
 struct Crossing {
     double t, u, v;
     bool leaving; // the line comes from the triangle's inner side

@@ -22,7 +22,7 @@ struct RoundShape {
     bool operator==(const RoundShape&) const = default;
 };
 
-/// Where a ray meets a surface.
+/// The point where a ray meets a surface.
 struct RoundMeeting {
     double t;
     dvec3 normal; // outwards, of any length

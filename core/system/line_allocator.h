@@ -7,7 +7,7 @@
 
 namespace ovc {
 
-/// What is as large as a line, or a part of it, then never lies in two.
+/// An item as large as a line, or a part of it, then never lies in two.
 template <class T>
 struct LineAllocator {
     using value_type = T;

@@ -29,7 +29,7 @@ double height_of(const std::vector<SlopeStop>& profile, double value) {
            s * t * (s * a.slope - t * b.slope);
 }
 
-/// What a bump depends on besides itself.
+/// A bump depends on this besides itself.
 struct Around {
     std::span<const Texture> textures;
     std::span<const Bump> bumps;

@@ -60,7 +60,7 @@ bool is_sound(const Step& step, size_t routine, size_t textures) {
     }
 }
 
-/// What a call of a routine needs at most.
+/// The most that a call of a routine needs.
 struct Needs {
     double work = 0;
     size_t stack = 0;

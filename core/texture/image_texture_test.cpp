@@ -72,7 +72,7 @@ TEST(ImageTexture, TheOctahedralMapKeepsAreasAndAxes) {
     expect_place(Projection::Octahedral, {1, 0, 0}, {1, 0.5});
     expect_place(Projection::Octahedral, {0, -1, 0}, {0.5, 0});
     expect_place(Projection::Octahedral, {0, 0, -1}, {1, 1});
-    // Of directions spread evenly, each quarter of the picture and each cell in it gets its share.
+    // Each quarter of the picture and each cell in it gets its share of evenly spread directions.
     constexpr int kCells = 8, kDirections = 200'000;
     std::array<int, kCells * kCells> counts{};
     for (int i = 0; i < kDirections; ++i) {

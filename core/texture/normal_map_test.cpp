@@ -19,7 +19,7 @@ public:
     bool has_opacity() const override { return false; }
 };
 
-/// The same color everywhere.
+/// A texture with the same color everywhere.
 class Even final : public ImageLookup {
 public:
     explicit Even(const vec3& color) : color_(color, 1) {}

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which textures and materials of a scene lie on texture coordinates.
+// Finds the textures and materials of a scene that lie on texture coordinates.
 #include "core/scene.h"
 
 namespace ovc {

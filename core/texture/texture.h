@@ -144,7 +144,7 @@ struct TextureStop {
     bool operator==(const TextureStop&) const = default;
 };
 
-/// What a texture makes of its parts.
+/// The way in which a texture combines its parts.
 enum class TextureKind : uint64_t {
     Pattern, // colors between stops are mixed in proportion, by the value of the pattern
     Image,   // the color of `image`, at the point that the pattern's affine steps lead to

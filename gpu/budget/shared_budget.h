@@ -58,7 +58,7 @@ public:
         Share* share_ = nullptr;
     };
 
-    /// What one scene may use. Calls on one share come from one thread at a time.
+    /// The part that one scene may use. Calls on one share come from one thread at a time.
     class Share {
     public:
         /// close(): frees what was allocated under the share; on any thread, but never within a Use

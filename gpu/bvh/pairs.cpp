@@ -91,7 +91,7 @@ std::array<uint64_t, 3> side_keys(const LocalTriangle& t) {
     return {mix(h[0] + h[1]), mix(h[1] + h[2]), mix(h[2] + h[0])};
 }
 
-/// Which own corners the pair's corners 0 and 2 are.
+/// Returns which own corners the pair's corners 0 and 2 are.
 uint32_t order(uint32_t first, uint32_t last) {
     return first | last << 2;
 }

@@ -49,7 +49,7 @@ static bool cpu_has_avx512() {
 #endif
 }
 
-/// What use_wide_vectors() was told.
+/// The argument of use_wide_vectors().
 static std::atomic<bool> narrow_for_fragments{false};
 
 void use_wide_vectors(bool fragment_kernels) {

@@ -10,7 +10,7 @@
 namespace ovc {
 namespace {
 
-/// Offers just what is needed, but for one entry.
+/// Offers just what is needed, except for one entry.
 int just_enough(GLenum asked, GLenum spoilt) {
     if (asked == GL_MAJOR_VERSION)
         return kGlMajor;

@@ -24,7 +24,7 @@ namespace ovc {
 /// them. Mapped memory that the device will write holds rubbish until then.
 class LateGl {
 public:
-    /// What a program that lacks a wait would see.
+    /// The effects of a missing wait, one of which a test may choose.
     enum class Lie { None, FencesArePassed, BarriersDoNothing };
 
     /// There is one at a time. A context is current, in which no pass is under way.
@@ -33,7 +33,7 @@ public:
     ~LateGl();
     LateGl(const LateGl&) = delete;
 
-    /// How many runs of a shader were waiting at most.
+    /// Returns how many runs of a shader were waiting at most.
     size_t most_shaders() const { return most_shaders_; }
 
 private:

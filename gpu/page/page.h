@@ -28,7 +28,7 @@ struct Page {
     std::span<const uvec4> borrowed{}; // the owner keeps them alive and unchanged
     uint32_t depth = 0;                // nodes on the longest way down
     float built_cost = 0;              // of a ray before the first refit (refit.h); 0: none yet
-    /// Of a page that lies on a disk: its bytes, and its number there. Its view() is the head.
+    /// A page that lies on a disk has these bytes, and a number there. Its view() is the head.
     uint64_t stored_bytes = 0;
     uint32_t stored_number = 0;
 

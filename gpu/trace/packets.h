@@ -19,7 +19,7 @@ inline constexpr uint32_t kPacketRays = 2;
 /// Whether most neighbours in the sequence go nearly the same way: their directions differ by less
 /// than 1/16, and they begin nearer to each other than 1/16 of the frame. Looks at a sample.
 bool coherent(std::span<const LocalRay> rays);
-/// The same of rays that ray_at() returns.
+/// Does the same for rays that ray_at() returns.
 bool coherent(size_t rays, FunctionRef<LocalRay(size_t)> ray_at);
 
 /// A ray of a pass that was moved, and its new slot behind all rays.

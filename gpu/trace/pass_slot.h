@@ -40,7 +40,7 @@ struct PassSlot {
     gl::BufferTexture name_words; // of these, or of the ray buffer
     gl::TimeQuery time;
 
-    // Of the pass that was sent last:
+    // The pass that was sent last:
     SentRays* sent = nullptr; // null: it is over
     RayKind kind;
     KernelVariant variant;

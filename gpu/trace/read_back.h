@@ -21,7 +21,7 @@ public:
     bool is_there() const { return !buffer_.memory().empty(); }
     /// The GL name of the buffer to copy to.
     GLuint id() const { return buffer_.id(); }
-    /// To be called behind the copies of a pass.
+    /// Must be called behind the copies of a pass.
     void end_copies() { copied_.emplace(); }
     /// Waits for these copies, and returns the memory.
     std::span<const std::byte> bytes() {

@@ -129,7 +129,7 @@ size_t SentRays::put(size_t at, const RayStates& states, uint32_t which) {
     LocalRows local;
     if (is_local)
         to_tree_frame(frame_, form_.way_in, states, which, local);
-    // What most calls are made of: eight rays as they are.
+    // Most calls are made of this: eight rays as they are.
     auto* const rows = std::get_if<PagedVector<LocalRay>>(&rays_);
     if (rows && which == RayLanes::first(RayLanes::kCount)) {
         std::memcpy(static_cast<void*>(&(*rows)[at]), local.rows, sizeof(local.rows));

@@ -12,7 +12,7 @@
 
 namespace ovc {
 
-/// What the ring asks of a driver. Copies happen in the order in which they are asked for, at any
+/// The ring asks this of a driver. Copies happen in the order in which they are asked for, at any
 /// time until a fence behind them is passed.
 class StagingDriver {
 public:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is written through the ring arrives, whenever a driver gets around to copying it.
+// Bytes that are written through the ring arrive, whenever a driver gets around to copying them.
 #include "gpu/trace/staging.h"
 
 #include <gtest/gtest.h>

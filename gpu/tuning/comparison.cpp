@@ -30,7 +30,7 @@ std::optional<VariantComparison> compare(const KernelVariant& base, const Kernel
     VariantComparison found;
     found.ratio = ratios[rounds / 2];
     found.base_seconds = *std::ranges::min_element(base_seconds);
-    // Of 15 rounds, 11; by chance alone as many would be faster once in 17 comparisons, and
+    // That is 11 of 15 rounds; by chance alone as many would be faster once in 17 comparisons, and
     // whatever gains is compared twice.
     const size_t surely = rounds - std::max<size_t>(rounds, 3) / 3 + 1;
     found.is_faster = found.ratio < 1 - limits.worthwhile && ratios[surely - 1] < 1;

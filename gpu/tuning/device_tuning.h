@@ -17,7 +17,7 @@
 
 namespace ovc {
 
-/// What a device can do for tuning. All calls come on the thread of its context.
+/// A device's part in tuning. All calls come on the thread of its context.
 class VariantTrials {
 public:
     virtual ~VariantTrials() = default;
@@ -55,7 +55,7 @@ class DeviceTuning {
 public:
     /// driver: as for TuningFile.
     DeviceTuning(const DeviceInfo& device, TuningFile file, LogSink log);
-    /// With the file for the device in the folder of compiled kernels.
+    /// Returns one whose file lies in the folder of compiled kernels.
     static std::shared_ptr<DeviceTuning> of(const DeviceInfo& device, LogSink log);
 
     /// The variants to take now.
@@ -91,7 +91,7 @@ private:
     bool is_due(const Search& search, size_t rays, const TuningLimits& limits) const;
     bool is_time(const Search& search, const TuningLimits& limits) const;
     void begin(RayKind kind, Search& search, VariantTrials& trials);
-    /// What comes after a step: another, the next pass of this kind, or the decision.
+    /// The next thing after a step: another, the next pass of this kind, or the decision.
     enum class Next { Step, Pass, Decide };
     Next go_on(RayKind kind, Search& search, const TuningLimits& limits, VariantTrials& trials);
     void finish(RayKind kind, Search& search, const TuningLimits& limits, VariantTrials& trials);

@@ -81,7 +81,7 @@ TEST_F(Tuning, FindsAllSwitchesThatGain) {
     EXPECT_EQ(tuning().variants()[kKind].text(), expected.text()) << "it was not kept";
 }
 
-// A variant that is as fast as the default but for noise may be taken, a slower one never.
+// A variant that is as fast as the default apart from noise may be taken, a slower one never.
 TEST_F(Tuning, NeverTakesOneThatIsSlowerOverATenthOfTheRunsDisturbed) {
     for (unsigned start = 0; start < 200; ++start) {
         fs::remove_all(folder);

@@ -15,7 +15,7 @@ struct FloatPair {
     double value() const { return double(hi) + double(lo); }
 };
 
-/// What a driver is asked, and what it answers (shaders/float_pair_check.comp.glsl).
+/// A question to a driver, and its answer (shaders/float_pair_check.comp.glsl).
 struct FloatPairQuestion {
     FloatPair a, b;
 };

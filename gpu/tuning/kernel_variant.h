@@ -51,7 +51,7 @@ KernelVariant with_changes(KernelVariant base, const KernelVariant& from,
 bool can_read(const DeviceInfo& device, const KernelVariant& variant, uint32_t buffers,
               uint64_t buffer_bytes);
 
-/// What the rays of a pass have in common as far as kernels care. Each kind has a variant.
+/// The rays of a pass have this in common, as far as kernels care. Each kind has a variant.
 struct RayKind {
     /// What they go through (shaders/portals.glsl): one frame, the frames of pages that reach far,
     /// or those of instances.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How the triangles of the dragon are shared out among its parts.
+// Shares out the triangles of the dragon among its parts.
 #include "testscenes/dragons/creature.h"
 
 #include "testscenes/dragons/anatomy.h"

@@ -27,7 +27,7 @@ dvec3 place_of(uint32_t dragon) {
     return {kAcross * kPlaces[dragon][0], 0, kDeep * kPlaces[dragon][1]};
 }
 
-/// How far the dragons stretch from the middle.
+/// The distance that the dragons stretch from the middle.
 double reach_of(uint32_t count) {
     double reach = 0;
     for (uint32_t dragon = 0; dragon < count; ++dragon)

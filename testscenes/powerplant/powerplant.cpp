@@ -23,7 +23,7 @@ struct Task {
     Bay bay;
 };
 
-/// From the ground up.
+/// Returns the tasks, from the ground up.
 std::vector<Task> tasks_of(const Plan& plan) {
     std::vector<Task> tasks = {{Task::Yard, {}}};
     for (uint32_t storey = 0; storey < plan.storeys; ++storey)

@@ -4,7 +4,7 @@ import data
 import draw
 from page import Section, Table, listed, words
 
-# What a sweep is over, as a title and as an axis say it.
+# The quantity of a sweep, in the words of a title and of an axis.
 SWEPT = {"budget": ("the budget grows", "budget, % of the bytes of all pages")}
 SWITCHES = {"shadows": "shadow rays", "bounces": "reflection and refraction", "cutouts": "cut-out "
 "leaves",

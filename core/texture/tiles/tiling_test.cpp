@@ -12,7 +12,7 @@ namespace {
 constexpr std::array<dvec3, 4> kTilingPoints = {
     {{0.37, 0, 0.21}, {-1.63, 0, 2.28}, {5.19, 0, -3.77}, {-8.41, 0, -6.13}}};
 
-/// What povray 3.7.0.10 has for `tiling 1` to `tiling 24` there.
+/// The values of povray 3.7.0.10 for `tiling 1` to `tiling 24` there.
 constexpr double kAskedTilings[kTilings][4] = {
     {0.58, 0.44, 0.62, 0.74},
     {0.757513, 0.946359, 0.366611, 0.129157},
