@@ -82,7 +82,7 @@ struct RayCall;
 /// whether corners are doubles. Meshes of the same one show the same corners, as instances do.
 using CornerReader = std::tuple<ovc_read_corners_function, void*, uint64_t, uint32_t>;
 
-/// Whose corners a chunk has.
+/// The mesh whose corners a chunk has.
 struct MeshSource {
     uint32_t mesh;          // its own number for a mesh; kNone once it is removed
     uint32_t instances = 0; // of a mesh: those that are not removed
@@ -229,7 +229,7 @@ ovc_result told_result(Keeper& messages, Body&& body) {
     }
 }
 
-/// The same, and nothing is thrown.
+/// Does the same, but throws nothing.
 template <class Keeper, class Body>
 ovc_result guard(Keeper& messages, Body&& body) noexcept {
     try {

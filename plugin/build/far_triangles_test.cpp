@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which triangles are far, and that no tree leads to their pages.
+// Tests which triangles are far, and that no tree leads to their pages.
 #include "plugin/build/far_triangles.h"
 
 #include "kdtree/test_soups.h"

@@ -9,7 +9,7 @@
 
 namespace ovc {
 
-/// Which pages stay, one entry for each of BuiltScene::pages.
+/// Whether each of BuiltScene::pages stays.
 using PagesKept = std::vector<bool>;
 
 /// Drops all other pages of the scene, and the leaves that they belong to. The scene has its pages

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How many leaves there are where the caller leaves that open, and the sizes of their pages.
+// Tests how many leaves there are where the caller leaves that open, and the sizes of pages.
 #include "plugin/build/level2.h"
 
 #include "kdtree/test_soups.h"

@@ -28,7 +28,7 @@ inline Box with_room(const Box& box) {
 /// Updates the scene's duplicates, leaves and pages, but not those of its shared meshes.
 class LevelUpdate {
 public:
-    /// How the frame of the leaves changes, where they share one.
+    /// The change of the frame of the leaves, where they share one.
     struct FrameChange {
         bool is_new = false; // the frame is another one, or the place of all triangles in it
         Box reach = {};      // lies inside afterwards
@@ -42,7 +42,7 @@ public:
     /// Returns false where the scene must be built anew.
     bool run();
 
-    /// What an update does with the page of a leaf.
+    /// An update's work on the page of a leaf.
     enum class Work : uint8_t { None, Refit, Rebuild };
     struct LeafChange {
         uint32_t was; // its number before; kNone: it is new

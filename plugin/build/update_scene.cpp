@@ -95,7 +95,7 @@ private:
         return box;
     }
 
-    /// Whether level 1 is still of the same chunks, but for those that were removed.
+    /// Whether level 1 is still of the same chunks, except for those that were removed.
     bool keeps_once(std::span<const uint32_t> once) const {
         std::vector<uint32_t> left;
         std::ranges::copy_if(scene_.once, std::back_inserter(left),

@@ -12,7 +12,7 @@
 
 namespace ovc {
 
-/// What an update has done to the pages of a scene.
+/// Counts of the pages that an update has changed.
 struct PageChanges {
     std::vector<uint32_t> was;     // for each page: its number before; kNone: it is new
     std::vector<uint32_t> changed; // those of before whose units are others now

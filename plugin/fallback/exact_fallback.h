@@ -121,7 +121,7 @@ private:
     bool is_done_ = false;
 };
 
-/// What trace_few() found.
+/// The result of trace_few().
 struct FewFound {
     bool is_answer = false; // false: the ray meets too many triangles
     Candidate found;        // the hit, not rounded; else one of the ray, or none, for RaysTogether

@@ -19,7 +19,7 @@ inline uint64_t corner_blocks(uint64_t triangles) {
     return (triangles + kCornerBlock - 1) / kCornerBlock;
 }
 
-/// What is known of a mesh without its corners.
+/// A mesh without its corners.
 struct SummedMesh {
     dvec3 origin{0};
     uint64_t triangles = 0;
@@ -43,7 +43,7 @@ CornerSums unsummed(const Soup& soup);
 /// Returns the sums of a soup in memory.
 CornerSums corner_sums_of(const Soup& soup);
 
-/// Writes the checksums of some triangles, which are whole blocks but for the end of a mesh.
+/// Writes the checksums of some triangles, which are whole blocks except at the end of a mesh.
 void sum_blocks(Bytes corners, size_t triangle_bytes, std::span<uint64_t> sums);
 
 } // namespace ovc

@@ -18,7 +18,7 @@
 
 namespace ovc {
 
-/// Where a page lies in what was saved, and how it is known to be whole.
+/// The place of a page in saved levels, and the checksum that tells whether it is whole.
 struct PagePlace {
     uint64_t offset;
     uint64_t bytes;
@@ -85,7 +85,7 @@ public:
 private:
     class Mesh;
 
-    /// What pages and corners may take.
+    /// The bytes that pages and corners may take.
     struct Shares {
         uint64_t pages;
         uint64_t corners;

@@ -113,7 +113,7 @@ Result<PageCache::Pin> PageCache::pin(uint32_t page) {
     bool waited = false;
     while (entry.state != State::Here) {
         if (entry.state == State::Away && !make_room(entry.bytes)) {
-            // What was read ahead can be read again.
+            // A page that was read ahead can be read again.
             for (Entry& other : entries_)
                 if (std::exchange(other.is_ahead, false))
                     ahead_bytes_ -= other.bytes;

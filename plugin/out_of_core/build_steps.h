@@ -8,7 +8,7 @@
 
 namespace ovc {
 
-/// What is thrown where the checksum of scratch space is wrong.
+/// The build throws this where the checksum of scratch space is wrong.
 inline Failure damaged_scratch() {
     return {OVC_ERROR_UNREADABLE, "the scratch space gives back other bytes than it was given"};
 }

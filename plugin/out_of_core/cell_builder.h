@@ -16,7 +16,7 @@
 
 namespace ovc {
 
-/// What is the same for all cells.
+/// Options that are the same for all cells.
 struct CellOptions {
     Box bounds; // of the scene
     uint32_t max_triangles = 1;

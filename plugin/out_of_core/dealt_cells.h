@@ -21,7 +21,7 @@ struct DealtExtent {
     uint64_t checksum;
 };
 
-/// What is known of a cell whose triangles all lie in the scratch space.
+/// A cell whose triangles all lie in the scratch space.
 struct DealtCell {
     uint64_t count = 0;
     Box bounds;

@@ -25,7 +25,7 @@ CornerSums unsummed(std::span<const SourceMesh> meshes) {
     return found;
 }
 
-/// What is found in one block.
+/// The survey of one block.
 struct BlockSurvey {
     Survey found;
     std::vector<uint32_t> drawn; // in the block

@@ -12,7 +12,7 @@
 
 namespace ovc {
 
-/// What pages of meshes take a triangle. Leaves whose pages turn out too large are cut again.
+/// The bytes that pages of meshes have. Leaves whose pages turn out too large are cut again.
 static constexpr double kBytesPerTriangle = 52;
 
 uint64_t triangles_of(std::span<const SourceMesh> meshes) {

@@ -31,7 +31,7 @@ namespace {
 /// times the triangles that it was made for are enough to tell what they take.
 constexpr size_t kOverfull = 2;
 
-/// What the second look at the source finds.
+/// The result of the second look at the source.
 struct Counted {
     explicit Counted(size_t cells, std::span<const SourceMesh> meshes)
         : near(cells), far(cells), in_cubes(meshes) {}

@@ -34,7 +34,7 @@ struct TwoLevelOptions {
     bool compute = false;        // true: the compute kernel, else the fragment kernel
     bool tell_active = false;    // passes mark the pages that rays are traced through
     bool kernel_alone = false;   // true: it answers all batches of more than kMaxFewRays rays
-    /// How the kernel's variant is chosen (docs/decisions/0032).
+    /// The way in which the kernel's variant is chosen (docs/decisions/0032).
     VariantChoice variant = VariantChoice::Default;
     KernelVariant given_variant = {}; // VariantChoice::Given
     /// Whether pages move in beside a pass. Default: on a GPU alone, because a software renderer

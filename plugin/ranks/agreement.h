@@ -10,7 +10,7 @@
 
 namespace ovc {
 
-/// What a rank brings to a scene that several ranks have together.
+/// A rank's part of a scene that several ranks have together.
 struct RankTerms {
     /// Is the same on all of them.
     struct Alike {

@@ -34,7 +34,7 @@ public:
         const Page& page = scene_.pages[node.at.page];
         const uint32_t unit = node.unit == Node::kWhole ? OVC_ROOT_UNIT : node.unit;
         const size_t texel = size_t(unit) * OVC_UNIT_TEXELS;
-        // Of a page on a disk only the root is here.
+        // Only the root of a page on a disk is here.
         if (page.view().size() < texel + OVC_UNIT_TEXELS || is_pair(page.view()[texel + 3]))
             return children;
         for (uint32_t child = 0; child < 4; ++child)

@@ -80,7 +80,7 @@ TEST_F(RankedGl, EqualsBruteForceBitForBit) {
             auto ranks = make(soup, count, {.leaf_triangles = 40});
             ASSERT_EQ(ranks.size(), count);
             on_all(ranks, [&](size_t i, RankedScene& scene) {
-                // Of different lengths, and rank 2 asks nothing.
+                // The calls have different lengths, and rank 2 asks nothing.
                 const size_t first = i == 2 ? rays.size() : i * 50;
                 test::expect_answers(scene, std::span(rays).subspan(first),
                                      std::span(expected).subspan(first));
@@ -262,7 +262,7 @@ TEST_F(RankedGl, AnswersAStreamAsOneProcessDoes) {
     const Result<Done> done = ranks[0].scene->stream(stopped);
     ASSERT_FALSE(done);
     EXPECT_EQ(done.error().kind, ErrorKind::Cancelled);
-    // What it has left on its way disturbs no call after it.
+    // Messages that it has left on their way disturb no call after it.
     on_all(ranks, [&](size_t, RankedScene& scene) {
         test::expect_answers(scene, std::span(rays).first(200),
                              test::brute_force(soup, std::span(rays).first(200)));

@@ -17,7 +17,7 @@
 
 namespace ovc {
 
-/// What routed calls of a scene have in common.
+/// All routed calls of a scene have these in common.
 struct Routing {
     const Soup& soup; // whose corners decide between hits of equal t
     const StopFinder& finder;
@@ -25,7 +25,7 @@ struct Routing {
     std::function<bool()> is_idle; // whether this rank traces nothing just now
 };
 
-/// What the routed calls of a scene count together.
+/// Counts over all routed calls of a scene.
 struct RoutedCounts {
     explicit RoutedCounts(uint32_t ranks) : away(ranks) {}
 
@@ -72,7 +72,7 @@ public:
     bool is_done() const { return done_ == count(); }
 
 private:
-    /// What waits to go to a rank, and how many rays are there.
+    /// Messages that wait to go to a rank, and how many of its rays are there.
     struct Outgoing {
         std::vector<uint32_t> waiting; // rays
         size_t away = 0;

@@ -58,7 +58,7 @@ public:
     /// Traces the rays that the host pushes until there are no more. Error of the kind Cancelled:
     /// the host stopped it. This default traces batch after batch.
     virtual Result<Done> stream(StreamHost& host) { return stream_in_batches(*this, host); }
-    /// As intersect(), and fills in the notes, which are empty unless takes_notes().
+    /// Does the same as intersect(), and fills in the notes, which are empty unless takes_notes().
     virtual Result<Done> intersect_noted(RaySpan rays, const Exclusions& without,
                                          std::span<Hit> hits,
                                          [[maybe_unused]] const RayNotes& notes) {

@@ -68,7 +68,7 @@ public:
     virtual void read_written(uint64_t offset, std::span<std::byte> to) = 0;
 };
 
-/// Where a scene comes from, and what its build may take.
+/// The source of a scene, and the memory that its build may take.
 struct StreamedScene {
     TriangleSource& source;
     ScratchSpace& scratch;

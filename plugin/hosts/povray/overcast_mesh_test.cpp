@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What POV-Ray is given for a mesh, against every triangle tested in turn.
+// Compares POV-Ray's answers for a mesh with those of every triangle tested in turn.
 #include "plugin/hosts/povray/overcast_mesh.h"
 
 #include "core/exact/triangle.h"

@@ -14,7 +14,7 @@ static constexpr double kBefore = 1e-4; // in lengths of the triangle: what lies
 
 using Vector = std::array<double, 3>;
 
-/// From each corner to the hit, in units of the triangle.
+/// Returns the way from each corner to the hit, in units of the triangle.
 static std::array<Vector, 3> to_hit(const ovc_hit& hit, const Triangle& t) {
     const auto from_corner = [&](double u, double v) {
         return Vector{u * t.edge1.x + v * t.edge2.x, u * t.edge1.y + v * t.edge2.y,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where triangles are.
+// The corners of triangles.
 #pragma once
 
 #include <variant>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What overcast-tachyon is told about Overcast; it comes to the library in the environment.
+// The settings of overcast-tachyon, which come to the library in the environment.
 #pragma once
 
 #include <cstdint>

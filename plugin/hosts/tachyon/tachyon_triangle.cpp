@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which objects are triangles, asked of Tachyon itself.
+// Asks Tachyon itself which objects are triangles.
 #include "plugin/hosts/tachyon/tachyon_triangle.h"
 
 #include <cstddef>

@@ -120,7 +120,7 @@ vector sum(const vector& a, const vector& b) {
     return {a.x + b.x, a.y + b.y, a.z + b.z};
 }
 
-/// As floats where they are none but floats, as doubles otherwise.
+/// Takes them as floats where floats hold them, as doubles otherwise.
 Corners corners_of(const std::vector<object*>& triangles) {
     std::vector<double> exact;
     exact.reserve(9 * triangles.size());

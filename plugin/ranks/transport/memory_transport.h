@@ -16,7 +16,7 @@ namespace ovc::test {
 
 class MemoryTransport final : public Transport {
 public:
-    /// What all ranks share. A rank may still be sending when the one it sends to is gone already.
+    /// All ranks share it: a rank may still be sending when the one it sends to is gone already.
     struct Network {
         explicit Network(uint32_t ranks) : waiting(ranks) {}
         std::vector<MessageQueue> waiting; // for each rank

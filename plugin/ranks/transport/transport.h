@@ -48,7 +48,7 @@ private:
     std::vector<Received> received_;
 };
 
-/// What the transport has done.
+/// Counts of what the transport has done.
 struct TransportCounts {
     uint64_t bytes_sent = 0;
     uint64_t bytes_received = 0;
@@ -71,7 +71,7 @@ public:
         else
             send_away(to, std::move(message));
     }
-    /// Where messages arrive.
+    /// The queues in which messages arrive.
     MessageQueue visits, answers, notes;
 
     /// Returns what has happened to a rank that is gone, this one or another; nothing while all are
