@@ -26,7 +26,7 @@ struct PngPixels {
     std::span<const uint16_t> samples; // 3 x width x height
 };
 
-/// The same for pictures that are made while they are written, some rows at once.
+/// Does the same for pictures that are made while they are written, some rows at once.
 struct PngRows {
     uint32_t width = 0;
     uint32_t height = 0;

@@ -11,7 +11,7 @@
 namespace ovc {
 namespace {
 
-/// What a file gives, and then why it gives no more.
+/// The bytes that a file gives, and then the reason why it gives no more.
 struct Given {
     std::string text;
     std::string damage;

@@ -230,7 +230,7 @@ void Looks::add_holes(const aiMaterial& source, const Image& color, AssimpMateri
     scene_.cutouts.push_back(std::move(cutout));
 }
 
-/// Returns the share of light that a surface without holes stops: of glTF all but for BLEND, and
+/// Returns the share of light that a surface without holes stops: of glTF all except for BLEND, and
 /// none below the cutoff of a MASK.
 float opacity_of(const aiMaterial& source) {
     const std::string mode = alpha_mode_of(source);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What Assimp's materials and lights become: above all those of glTF 2.0, with their textures.
+// Converts Assimp's materials and lights: above all those of glTF 2.0, with their textures.
 #pragma once
 
 #include "core/scene.h"

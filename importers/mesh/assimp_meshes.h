@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What Assimp's meshes become, where its nodes put them.
+// Converts Assimp's meshes, placed where its nodes put them.
 #pragma once
 
 #include "core/result.h"

@@ -57,7 +57,7 @@ std::string bytes_of(size_t number) {
     return {reinterpret_cast<const char*>(&narrow), sizeof(narrow)};
 }
 
-/// Where the JSON lies in the file.
+/// The place of the JSON in the file.
 struct Span {
     size_t first, count;
 };
@@ -139,7 +139,7 @@ bool is_of_floats(const Json& accessor) {
     return accessor.value("componentType", Json()) == kFloat;
 }
 
-/// What a file has that is not shown.
+/// Parts of a file that are not shown.
 class Omissions {
 public:
     explicit Omissions(Json& gltf) : gltf_(gltf) {}

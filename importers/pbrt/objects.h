@@ -9,7 +9,7 @@
 
 namespace ovc::pbrt {
 
-/// Which rays see a shape, and where.
+/// The visibility of a shape: its holes, and the rays that see it.
 struct Sight {
     uint32_t cutout = kNone, shadow_cutout = kNone; // as in MeshInfo
     uint32_t seen_by = kSeenByAll;

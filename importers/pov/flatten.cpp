@@ -243,7 +243,7 @@ Box reach_of_solids(const Box& world) {
     return Box{world.center(), world.center()}.padded(kPlaneReach * reach_of(world));
 }
 
-/// What the triangles of a mesh have in common.
+/// The triangles of a mesh have these in common.
 struct MeshKey {
     uint32_t material, cutout, seen_by;
     LitBy lit_by;

@@ -180,7 +180,7 @@ Cover Gatherer::cover_of(const Object& object, const Inherited& from, bool in_so
     const bool on_corners =
         object.kind == "mesh" || object.kind == "mesh2" || (shape && shape->corners_have_uv);
     const bool has_uv = !in_solid && on_corners;
-    // Of a mix the first texture stands here.
+    // A mix has its first texture here.
     const bool has_holes = pigment.holes && !texture.mix.pattern && (!on_uv || has_uv);
     const Texture filled = has_holes ? without_holes(texture, on_uv) : Texture();
     const Texture& look = has_holes ? filled : texture;

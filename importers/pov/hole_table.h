@@ -10,7 +10,7 @@
 
 namespace ovc::pov {
 
-/// What covers a shape: a material, and a number in the HoleTable, or kNone.
+/// The cover of a shape: a material, and a number in the HoleTable, or kNone.
 struct Cover {
     uint32_t material = 0;
     uint32_t holes = kNone;

@@ -178,7 +178,7 @@ private:
         scene.faces->backwards = camera.direction.z < 0;
     }
 
-    /// As povray, which draws none without colors.
+    /// povray draws none without colors either.
     static void add_rainbow(Rainbow bow, Scene& scene) {
         const double length = glm::length(bow.direction);
         if (bow.colors.empty() || !(bow.width > 0 && bow.distance > 0 && bow.arc > 0 && length > 0))

@@ -111,7 +111,7 @@ void turn_outward(CutLeaf& leaf) {
         }
 }
 
-/// How finely shapes are cut.
+/// The fineness with which shapes are cut.
 struct Fineness {
     int segments; // of a circle
     int cells;    // of a field

@@ -9,7 +9,7 @@
 
 namespace ovc::pov {
 
-/// Where a ray meets a surface.
+/// The point where a ray meets a surface.
 struct Meeting {
     double distance = std::numeric_limits<double>::infinity(); // infinite: the ray misses
     dvec3 normal{0};                                           // of any length
@@ -37,7 +37,7 @@ public:
     /// be 1. The ray does not meet surfaces within 1e-6 of its origin.
     Meeting first_meeting(const dvec3& origin, const dvec3& direction) const;
 
-    /// What the object holds within it.
+    /// The region within the object.
     const Region& region() const { return region_; }
     size_t triangle_count() const { return normals_.size() / 3; }
 

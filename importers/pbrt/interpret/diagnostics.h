@@ -26,7 +26,7 @@ struct Place {
 /// Returns "FILE:7: sentence".
 Error error_at(const Place& place, std::string_view sentence);
 
-/// How much a warning matters under --strict.
+/// The weight of a warning under --strict.
 enum class Gravity {
     Missing,    // unknown words, missing files, unusable data: an error if strict
     Approximate // understood, and shown as nearly as we can: never an error

@@ -15,7 +15,7 @@ struct Transforms {
     std::array<dmat4, 2> at{dmat4(1), dmat4(1)};
     std::array<bool, 2> active{true, true};
 
-    /// What is nowhere does not move; NaN is no number's equal.
+    /// A shape that is nowhere does not move; NaN is no number's equal.
     bool move() const { return at[0] != at[1] && is_finite(at[0]) && is_finite(at[1]); }
     void multiply(const dmat4& by) {
         for (size_t i = 0; i < 2; ++i)
@@ -35,7 +35,7 @@ struct GraphicsState {
     std::optional<Emission> emission;
     bool reversed = false;
     dmat3 to_srgb{1}; // from the color space of "rgb"
-    /// What the names of textures and materials meant where the scope began.
+    /// The meaning that names of textures and materials had where the scope began.
     struct Names {
         std::array<size_t, 2> textures{};
         size_t alphas = 0, materials = 0;

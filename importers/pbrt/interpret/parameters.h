@@ -79,7 +79,7 @@ public:
     const std::vector<Parameter>& all() const { return list_; }
 
 private:
-    /// The same as find(), of a parameter that has one value.
+    /// Does the same as find() for a parameter that has one value.
     const Parameter* find_one(std::string_view name, std::initializer_list<Kind> kinds) const;
     bool read_values(Tokens& tokens, Diagnostics& diagnostics, Parameter& parameter);
 

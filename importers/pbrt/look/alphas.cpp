@@ -90,7 +90,7 @@ void Alphas::end_scope(size_t begin) {
     });
 }
 
-/// What is not evaluated has been told of already where it was asked for as alpha.
+/// A texture that is not evaluated was told of already, where it was asked for as alpha.
 void Alphas::tell_unless_used(const std::string& name, const Pattern& pattern) const {
     if (!pattern.used && !textures_.is_used(name))
         textures_.tell_mean(pattern.type, pattern.place);

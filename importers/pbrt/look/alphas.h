@@ -10,7 +10,7 @@
 
 namespace ovc::pbrt {
 
-/// What a parameter such as alpha makes of a shape.
+/// The effect of a parameter such as alpha on a shape.
 struct Alpha {
     bool is_zero = false;    // nothing is there
     uint32_t cutout = kNone; // index into what take() returns; kNone: no holes

@@ -15,7 +15,7 @@
 
 namespace ovc::pbrt {
 
-/// What a Texture directive says.
+/// The contents of a Texture directive.
 struct TextureRequest {
     std::string type; // its class, "scale"
     Parameters parameters;

@@ -20,7 +20,7 @@ double cosine_of_degrees(double degrees) {
 
 /// Parts of a light that take effect once all of them are read.
 struct Words {
-    /// Of the words of kinds the last one counts, as in povray.
+    /// The last word that names a kind counts, as in povray.
     enum class Kind { Point, Spot, Cylinder, Shadowless };
     Kind kind = Kind::Point;
     dvec3 point_at{0, 0, 1};

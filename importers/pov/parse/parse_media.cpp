@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kMaxSamples = 1 << 16;
 
-/// How closely a scene asks to look at a medium, with povray's defaults.
+/// The closeness with which a scene asks to look at a medium, with povray's defaults.
 struct Closeness {
     int method = 3, samples = 10, level = 3;
 };

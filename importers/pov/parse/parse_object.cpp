@@ -217,7 +217,7 @@ bool starts_object(const Token& token) {
 
 void place(Object& object, const dmat4& by) {
     object.placed = by * object.placed;
-    // What lies on texture coordinates moves with them, and not once more.
+    // A texture that lies on texture coordinates moves with them, and not once more.
     if (object.texture && !object.uv_mapping && !object.texture->pigment.uv_mapping)
         place(*object.texture, by);
     if (object.inside_texture)

@@ -8,7 +8,7 @@
 
 namespace ovc::pov {
 
-/// What a pattern is for.
+/// The use of a pattern.
 enum class MapOf { Pigments, Textures, Normals };
 
 /// Reads a map of colors, pigments, textures or normals from its { on.

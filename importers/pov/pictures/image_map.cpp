@@ -19,7 +19,7 @@ namespace ovc::pov {
 
 namespace {
 
-/// What a block's word gamma says: light is a code ^ gamma, or sRGB's (kSrgbGamma).
+/// A block's word gamma: light is a code ^ gamma, or sRGB's (kSrgbGamma).
 using GivenGamma = std::optional<double>;
 
 /// Returns the power that turns codes into colors of the scene, or 0 for sRGB's curve. The colors

@@ -67,7 +67,7 @@ struct Facets {
 /// on the axes, and the same for steps a whole turn apart. step: from 0; segments: a multiple of 4.
 dvec2 on_circle(int step, int segments);
 
-/// How circles become polygons.
+/// The polygon that stands for a circle.
 struct CirclePieces {
     int segments;      // of a circle; a multiple of 4, at least 8
     double radius = 1; // of the polygon's corners, in the circle's: 1 for corners on it

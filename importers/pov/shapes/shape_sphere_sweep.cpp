@@ -23,7 +23,7 @@ struct Ball {
     double radius;
 };
 
-/// What a ball fills that moves straight and grows evenly.
+/// The space that a ball fills which moves straight and grows evenly.
 struct TaperedCapsule {
     Ball a, b;
 

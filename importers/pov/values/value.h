@@ -138,7 +138,7 @@ struct ImageMap {
 
 struct PatternMap {
     Pattern pattern;
-    std::vector<MapStop> stops; // at least one, in ascending order but for Average
+    std::vector<MapStop> stops; // at least one, in ascending order except for Average
     ProgramPtr program;         // of Pattern::Kind::Function, in place of pattern.formula
     /// With stops, the pattern is the brightness of this picture. Without any, the picture takes
     /// the place of all these except the pattern's steps.
@@ -242,7 +242,7 @@ struct Function {
     size_t parameters = 3;
     NumberFormula formula;
     ColorFormula color;
-    /// Of `formula`, or with the textures of `color`, the last of which is the pigment.
+    /// The program of `formula`, or one with the textures of `color`, whose last is the pigment.
     ProgramPtr program;
     std::optional<dmat4> transform;
     std::optional<Spline> spline;

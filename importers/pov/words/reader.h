@@ -180,7 +180,7 @@ private:
         uint64_t changes = 0; // of a While, when its round began
         uint64_t rounds = 0, reads = 0, rounds_at_read = 0;
     };
-    /// How deep in frames, blocks and brackets a directive began.
+    /// The depth of frames, blocks and brackets at which a directive began.
     struct Depth {
         size_t frames, blocks;
         int64_t brackets;
