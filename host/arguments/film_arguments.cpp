@@ -122,7 +122,7 @@ Result<Done> FilmArguments::resolve_antialias(RenderJob& job) const {
     options.choice("--antialias-method", antialias_method_, kAntialiasMethods, method);
     options.count("--antialias-depth", antialias_depth_, 1, kMaxAntialiasDepth, how.depth);
     options.real("--jitter", jitter_, 0, 1, how.jitter);
-    // As with POV-Ray, whose files may have the others without it.
+    // POV-Ray's files, too, may have the others without it.
     if (!options.done() || antialias_.empty())
         return options.done();
     if (!samples_.empty())

@@ -27,8 +27,8 @@ struct KdTree;
 class SceneOnDisk;
 struct SoupDifference;
 
-/// A backend is built over one soup, which must outlive it unchanged but for what update() is told
-/// of, because it may use the corners in place. It is called by one thread at a time.
+/// A backend is built over one soup, whose corners it may use in place: the soup outlives it, and
+/// changes only as update() is told. One thread at a time calls the backend.
 class Backend {
 public:
     virtual ~Backend() = default;

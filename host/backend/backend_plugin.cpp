@@ -171,7 +171,7 @@ static ovc_mesh part_of(const Chunk& chunk, uint32_t first, uint32_t end) {
     return part;
 }
 
-/// What a call excludes, in the library's numbers.
+/// The exclusions of a call, in the library's numbers.
 class LibraryQuery {
 public:
     LibraryQuery(const MeshNumbers& numbers, const Exclusions& without)

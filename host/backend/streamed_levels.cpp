@@ -14,7 +14,7 @@
 namespace ovc {
 namespace {
 
-/// What the plugin's functions work on.
+/// The user pointer of the plugin's functions.
 struct Streams {
     const StreamedTriangles& triangles;
     const char* work; // for the terminal

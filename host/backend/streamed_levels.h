@@ -29,7 +29,7 @@ struct StreamedTriangles {
     std::function<std::optional<Error>()> error; // the first failure
 };
 
-/// What the build keeps, so that a later one goes on.
+/// The files that the build keeps, so that a later one goes on.
 struct KeptLevels {
     StepFile& steps;
     size_t first; // of the steps that are the plugin's

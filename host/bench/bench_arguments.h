@@ -11,7 +11,7 @@
 
 namespace ovc {
 
-/// What the bench measures: contenders over scenes, the table of bars, whole programs, how cost
+/// The kind of bench: contenders over scenes, the table of bars, whole programs, how cost
 /// grows, or what pictures cost and how wrong they are.
 enum class BenchKind { Contenders, Bars, Programs, Sweep, Pictures };
 enum class SweepOver { Rays, Triangles, Instances, Leaves, Budget };

@@ -22,7 +22,7 @@ struct RaySet {
     std::vector<Ray> rays;
 };
 
-/// What a backend says of a set: a hit of each ray, or whether each is occluded, as the query asks.
+/// A backend's answers for a set: a hit of each ray, or whether it is occluded, as the query asks.
 struct RaySetAnswers {
     std::vector<Hit> hits;
     std::vector<uint8_t> occluded;

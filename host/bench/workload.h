@@ -23,7 +23,7 @@ using StopRequest = std::function<bool()>;
 struct NearestTask {
     std::vector<Ray> rays;
     std::vector<Hit> hits; // one a ray
-    size_t call_rays;      // of each call, but for the last
+    size_t call_rays;      // of each call, except for the last
 };
 
 struct OcclusionTask {
@@ -58,7 +58,7 @@ struct Workload {
     std::vector<double> distances() const;
 };
 
-/// How far distances are from the right ones.
+/// The differences of distances from the right ones.
 struct DistanceError {
     double largest = 0;      // |t - right t| / |right t| where both hit, even different triangles
     double rms = 0;          // the root mean square of the same

@@ -23,7 +23,7 @@ dvec2 sample_place(uint32_t i, uint32_t samples);
 /// Returns the ray through a point of the picture, in pixels from its top left corner.
 Ray ray_through(const Pinhole& pinhole, const dvec2& point);
 
-/// How a pixel's camera rays are spread over it, and over the lens.
+/// The way in which a pixel's camera rays are spread over it, and over the lens.
 struct CameraSampling {
     FilterOptions filter{};
     uint64_t seed = 0;          // of places on the lens, and of random places in pixels

@@ -146,7 +146,7 @@ static Result<Done> convert_streamed(const SceneArguments& source, const Backend
                 : save_stored(read->scene, read->store, from, options, log, output);
 }
 
-/// As convert_streamed(), from where an earlier run ended.
+/// Does the same as convert_streamed(), from where an earlier run ended.
 static Result<Done> continue_streamed(const SceneArguments& source, const BackendOptions& options,
                                       const LogSink& log, const std::string& output) {
     Result<KeptConversion> kept = KeptConversion::open(output, source, options);

@@ -16,7 +16,7 @@
 #include <new>
 #include <string>
 
-/// Of several ranks, one that fails ends all, for the others would wait for it.
+/// One of several ranks that fails ends all, because the others would wait for it.
 static int fail(std::string_view sentence) {
     if (const ovc::Ranks* const ranks = ovc::Ranks::of_run())
         ranks->fail_all(sentence);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What to do where a machine lacks something; the order is that in which things are needed.
+// Advice where a machine lacks something, in the order in which things are needed.
 #include "host/doctor/machine.h"
 
 #include <fmt/format.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a measurement was made on, and what else the machine did meanwhile.
+// The machine of a measurement, and what else it did meanwhile.
 #pragma once
 
 #include <cstdint>

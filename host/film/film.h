@@ -61,9 +61,9 @@ public:
     /// either is under way.
     void take(Film&& other);
 
-    /// How many tiles there are, which are numbered row by row.
+    /// Returns how many tiles there are, which are numbered row by row.
     uint32_t tile_count() const { return columns_ * rows_; }
-    /// What a tile has, as bytes between processes of one program.
+    /// The size of a tile, as bytes between processes of one program.
     static constexpr size_t kTileBytes = kTilePixels * (sizeof(Sums) + 1);
     /// Writes which of the tile's pixels are done, and the sums of these. No ray of the tile is
     /// under way.

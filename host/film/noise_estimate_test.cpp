@@ -47,7 +47,7 @@ TEST(NoiseEstimate, IsWhatMeansOfSamplesDifferByOnADisplay) {
     EXPECT_NEAR(estimate.noise(pixels, kSamples, 1) / std::sqrt(squares), 1, 0.12);
     EXPECT_NEAR(estimate.noise(pixels, kSamples, 1) / estimate.noise(pixels, 4 * kSamples, 1), 2,
                 1e-9);
-    // What a film holds may be codes already: then a display shows the difference as it is.
+    // A film may hold codes already: then a display shows the difference as it is.
     EXPECT_NEAR(estimate.noise(pixels, 1, 1, /* gamma= */ 0), 0.4 / std::sqrt(12.0), 0.008);
     EXPECT_NEAR(double(estimate.image(kPixels, 1).pixels[7].g), 0.3, 0.2);
 }

@@ -14,7 +14,7 @@
 
 namespace ovc {
 
-/// What becomes of light between a film and its files.
+/// The steps from the light on a film to the tones of its files.
 struct Development {
     std::optional<Exposure> exposure;
     ToneMap tone_map = ToneMap::None; // of files for displays

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Those who watch a rendering while it goes on.
+// Watchers show a rendering while it goes on.
 #pragma once
 
 #include "host/terminal/progress_lines.h"

@@ -39,7 +39,7 @@ static_assert(sizeof(ovc_statistics) == 8 * (1
               "cmake/statistics.cmake has overlooked a field of plugin/overcast.h");
 #undef OVC_STATISTIC
 
-/// Where a field stands in the document: under its own name, but for those that belong together.
+/// Where a field stands in the document: under its own name, except for those that belong together.
 static Json::json_pointer place_of(std::string_view field) {
     static constexpr std::pair<std::string_view, const char*> kPlaces[] = {
         {"queues", "/queues/count"},

@@ -33,7 +33,7 @@ ovc_statistics counted_between(const ovc_statistics& before, const ovc_statistic
 /// Returns `now`, and what `earlier` has counted besides: a reading of another structure.
 ovc_statistics counted_besides(const ovc_statistics& earlier, const ovc_statistics& now);
 
-/// What one of several ranks has counted.
+/// The counts of one of several ranks.
 struct RankStats {
     ovc_statistics tracing{};
     RayCounts rays;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What all commands of several ranks have in common at their beginning.
+// The beginning that all commands of several ranks have in common.
 #include "host/ranks/join_ranks.h"
 
 #include "host/terminal/interrupt.h"

@@ -83,7 +83,7 @@ std::string Ranks::name_of(uint32_t rank) const {
 
 namespace {
 
-/// What the functions of a call refer to.
+/// The user pointer of the functions of a call.
 struct Waiting {
     const GoesOn& goes_on;
     const Ranks::Take& taker;

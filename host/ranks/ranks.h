@@ -34,7 +34,7 @@ class Ranks {
 public:
     /// Whether mpirun, or what does its work, has started this process; perhaps it alone.
     static bool has_starter();
-    /// The same, among several.
+    /// Returns whether this is so, and there are several.
     static bool are_there();
     /// Whether the library was built and lies where open() looks for it.
     static bool library_is_there();

@@ -32,7 +32,7 @@ uint32_t rounds_for(uint64_t rays_a_rank) {
 
 using Tiles = std::vector<uint32_t>;
 
-/// What a rank sends of tiles that all ranks know: these, and whether they are complete.
+/// A rank's message about tiles that all ranks know: their bytes, and whether they are complete.
 class TileBytes {
 public:
     static RankBytes of(const Film& film, std::span<const uint32_t> tiles, bool complete) {

@@ -35,7 +35,7 @@ struct Antialias {
 
 inline constexpr uint32_t kMaxAntialiasDepth = 9;
 
-/// What traces the samples of a picture. Its functions return false where they were stopped.
+/// Traces the samples of a picture. Its functions return false where they were stopped.
 class SampleTracer {
 public:
     virtual ~SampleTracer() = default;

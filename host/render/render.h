@@ -40,7 +40,7 @@ struct Progressive {
     std::function<void(const Film&)> show{};
 };
 
-/// What progressive rendering has come to.
+/// The result of progressive rendering.
 struct Sampled {
     uint32_t min = 0, max = 0; // samples of a pixel
     double mean = 0;

@@ -56,7 +56,7 @@ public:
         });
         take(tokens, rays.purposes);
     }
-    /// The same of their purposes alone.
+    /// Does the same for their purposes alone.
     void take(std::span<const uint64_t> tokens, UnwrittenVector<Purpose>& purposes) {
         purposes.resize(tokens.size());
         parallel_for(tokens.size(), kCopyGrain, [&](size_t first, size_t last) {

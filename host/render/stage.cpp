@@ -30,7 +30,7 @@ Result<Done> Stage::go_to(const Moment& moment) {
     if (!scene_.moves || moment == arguments_.moment)
         return Done{};
     arguments_.moment = moment;
-    // What there is to say of the scene was said of its first moment.
+    // Messages about the scene were said of its first moment.
     Result<Scene> next = open_scene(arguments_, LogSink(), size_);
     if (!next)
         return next.error();

@@ -27,7 +27,7 @@ public:
     const std::vector<Light>& lights() const { return lights_; }
 
     /// Goes on to this moment, where something in the scene moves. What is the same in both moments
-    /// is not built anew, but for meshes behind one that has become another.
+    /// is not built anew, except for meshes behind one that has become another.
     Result<Done> go_to(const Moment& moment);
 
 private:

@@ -26,7 +26,7 @@ box { -.5, .5 rotate 90 * clock * y translate (.5 + .1 * (frame_number - initial
       pigment { rgb <.2, .4, 1> } }
 )";
 
-/// The same with an object in two places, one of which turns, and a shape that rises.
+/// A like scene with an object in two places, one of which turns, and a shape that rises.
 constexpr const char* kPbrt = R"(LookAt 0 2 -8  0 .5 0  0 1 0
 Camera "perspective" "float fov" [40]
 WorldBegin

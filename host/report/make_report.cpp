@@ -18,7 +18,7 @@ namespace ovc {
 
 namespace fs = std::filesystem;
 
-/// The same from bin/ of a build tree and of an installation.
+/// The path from bin/, which is the same in a build tree and in an installation.
 static constexpr const char* kToolsFromCommand = "../share/overcast/report";
 
 static Result<Done> make_folders(const std::string& folder) {

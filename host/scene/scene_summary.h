@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a scene consists of and what it needs: for `overcast info`, and for framing.
+// The parts and the needs of a scene: for `overcast info`, and for framing.
 #pragma once
 
 #include "core/box.h"
@@ -13,7 +13,7 @@
 
 namespace ovc {
 
-/// What rendering the scene takes; what is not needed is neither stored nor sent anywhere.
+/// The needs of rendering the scene; anything else is neither stored nor sent anywhere.
 struct Needs {
     bool vertex_normals = false;
     bool texture_coordinates = false; // no material of ours has textures
@@ -24,7 +24,7 @@ struct Needs {
     bool certified = true;      // answers are proven, or resolved in double
 };
 
-/// What the scene itself does not say.
+/// The user's part, which the scene itself does not have.
 struct Query {
     bool shadows = true;
     bool certified = true;

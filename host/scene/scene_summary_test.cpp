@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a scene consists of.
+// Tests the summary of a scene.
 #include "host/scene/scene_summary.h"
 
 #include <gtest/gtest.h>

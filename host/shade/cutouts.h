@@ -12,7 +12,7 @@ namespace ovc {
 
 class Cutouts final : public HitFilter {
 public:
-    /// Which rays ask: for shadow rays a mesh may have holes of its own.
+    /// The rays that ask: for shadow rays a mesh may have holes of its own.
     enum class Asked { ByPaths, ByShadowRays };
 
     /// The scene must outlive it.

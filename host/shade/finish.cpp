@@ -9,8 +9,8 @@
 
 namespace ovc {
 
-/// White turning into the surface's color the more metallic it is, but for grazing angles. POV-Ray
-/// approximates Fresnel's curve of a metal so; angle_cosine: to the normal.
+/// Returns white, or the surface's color the more metallic it is, except at grazing angles. POV-Ray
+/// approximates Fresnel's curve of a metal so. angle_cosine: to the normal.
 static vec3 metallic_tint(const SurfacePoint& surface, float metallic, double angle_cosine) {
     if (!(metallic > 0))
         return vec3(1);

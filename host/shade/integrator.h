@@ -20,7 +20,7 @@ namespace ovc {
 enum class RayKind : uint8_t { Camera, Reflection, Refraction, Bounce };
 
 /// The materials of the solids that a ray has entered and not left, as far as its path has seen.
-/// Of more than four it forgets the outermost.
+/// It has room for four, and forgets the outermost of more.
 class Solids {
 public:
     /// Returns the one that was entered last; kNone: the ray is in none.

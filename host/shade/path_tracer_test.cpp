@@ -104,7 +104,7 @@ void expect_alike(const Estimate& a, const Estimate& b, const char* what) {
     EXPECT_NEAR(a.mean, b.mean, 5 * sigma) << what << ", sigma " << sigma;
 }
 
-/// What the camera sees at once is 0.8; after one bounce it is 0.4, after two 0.2.
+/// The camera sees 0.8 directly; after one bounce it is 0.4, after two 0.2.
 TEST(PathTracer, ClampBoundsLightThatOtherSurfacesScatterAndNothingElse) {
     Scene scene = dark();
     add_box(scene, optical({.diffuse = vec3(0.5f), .emission = vec3(0.8f)}), dvec3(-1), dvec3(1),

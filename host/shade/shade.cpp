@@ -28,7 +28,7 @@ static constexpr float kGround = 0.35f;
 /// position computed from the corners errs by less than half of this: see docs/design/numerics.md,
 /// "Spawned rays".
 static constexpr double kOffset = 0x1p-48;
-/// How many offsets a position keeps away from the edges, or it would cross the neighbour there.
+/// A position keeps so many offsets away from the edges, or it would cross the neighbour there.
 /// The minimum is enough for any angle of more than 1/64 rad between the two. The maximum, for 1e-4
 /// rad, is taken as long as it is not above kEdgeShare of the triangle's height.
 static constexpr double kMinEdgeOffsets = 64, kMaxEdgeOffsets = 16384;

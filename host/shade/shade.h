@@ -48,7 +48,7 @@ struct SurfacePoint {
 /// Returns the optics of the point's material, which has some, there.
 Optics optics_at(const SurfacePoint& surface);
 
-/// The same point with one material, and the share of it that is seen, for each color.
+/// A surface point with one material, and the share of it that is seen, for each color.
 struct Coat {
     SurfacePoint surface; // without coats
     vec3 weight;

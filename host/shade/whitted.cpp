@@ -133,7 +133,7 @@ static int times_around(const Soup& soup, uint32_t mesh, const dvec3& point) {
 
 void tell_simplifications(const Scene& scene, std::span<const Light> lights,
                           std::string_view source, const LogSink& log) {
-    // Of the stand-ins, only the sky's is parallel.
+    // The only stand-in that is parallel is the sky's.
     const auto is_on_emitter = [](const Light& light) { return light.stand_in && !light.parallel; };
     if (std::any_of(lights.begin(), lights.end(), is_on_emitter))
         say(log, LogLevel::Warning,
@@ -230,7 +230,7 @@ uint16_t Whitted::container_of(const Hit& hit) const {
 }
 
 /// Returns the media on a ray's way to its hit: those of all containers that it is in, and those of
-/// the air, but for solids that are not hollow.
+/// the air, except for solids that are not hollow.
 std::vector<const Medium*> Whitted::media_before(const Ray& ray, const Path& path,
                                                  const Hit& hit) const {
     const bool leaves = hit.is_hit() && is_inside(scene_, ray, hit);
@@ -347,7 +347,7 @@ void Whitted::follow(const Ray& ray, const Path& path, const Hit& hit, Met& met,
         return;
     const Cone cone{path.cone.width_at(ray, hit.t), path.cone.spread};
     const uint32_t material = scene_.meshes[hit.id.mesh].material;
-    // What lies around the surface's solid, from where or to where a ray goes through it.
+    // The solids around the surface's, from where or to where a ray goes through it.
     Solids around = path.within;
     if (!met.surface.entering)
         around.leave(material);

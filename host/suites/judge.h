@@ -11,7 +11,7 @@
 
 namespace ovc {
 
-/// How many answers are another than the right one, by kind.
+/// Counts of answers that are not the right one, by kind.
 struct Verdicts {
     uint64_t tied = 0;   // names another triangle, which the ray meets at exactly the same t
     uint64_t wrong = 0;  // any other triangle, or a hit where there is none
@@ -27,7 +27,7 @@ inline constexpr double kBesideUlps = 4;
 /// Returns |t - right| in units of the last place of a float at `right`; 0 where that is 0.
 double float_ulps(double t, double right);
 
-/// What nearest hits say: a triangle, or no mesh for a miss, and t.
+/// Nearest hits: each names a triangle, or no mesh for a miss, and t.
 struct NamedHits {
     std::vector<TriangleId> names;
     std::span<const double> t;

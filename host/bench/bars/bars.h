@@ -49,11 +49,11 @@ private:
 /// was measured.
 std::string_view verdict(const Bar& bar);
 
-/// What is promised of a ratio.
+/// The promise of a ratio.
 struct Promise {
     double at_least, aim;
 };
-/// The same for primary, shadow and diffuse rays.
+/// One promise each for primary, shadow and diffuse rays.
 using PromiseOfSets = std::array<Promise, 3>;
 
 /// Returns a line for each set of rays: the peer's kernel seconds divided by ours, certified.

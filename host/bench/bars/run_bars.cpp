@@ -26,7 +26,7 @@ constexpr const char* kSoup = "soup-500";
 constexpr const char* kArchitecture = "powerplant-400000";
 constexpr const char* kBeyondMemory = "dragons-10";
 
-/// What is promised on the mesh, against Embree's robust mode and the CPU KD-tree in float.
+/// The promises on the mesh, against Embree's robust mode and the CPU KD-tree in float.
 constexpr PromiseOfSets kKernel = {{{1.25, 1.6}, {1.35, 1.6}, {1.05, 1.6}}};
 constexpr PromiseOfSets kKernelOfKdTree = {{{2.5, 3}, {4, 5}, {4, 6}}};
 constexpr PromiseOfSets kCall = {{{0.85, 1.1}, {1.1, 1.4}, {0.85, 1.1}}};
@@ -190,7 +190,7 @@ private:
         return Done{};
     }
 
-    /// The same rays in many small calls and in one.
+    /// Asks the same rays in many small calls and in one.
     Result<Done> small_calls() {
         Asked asked{.size = large_};
         for (const std::string set : kRaySetNames)
@@ -255,7 +255,7 @@ private:
         return Done{};
     }
 
-    /// What holds on one mesh must hold on scenes of every kind, in the leaves that the plugin
+    /// A bar of one mesh must hold on scenes of every kind as well, in the leaves that the plugin
     /// chooses itself.
     Result<Done> scenes() {
         std::vector<Contender> contenders = {kCertifiedBar};

@@ -14,7 +14,7 @@
 
 namespace ovc {
 
-/// How far the answers of rays are from the exact shapes.
+/// The distances of rays' answers from the exact shapes.
 struct ShapeError {
     /// Distances of hit points from the nearest surface, in radii of its shape: the largest of each
     /// shape, and the root mean square of all.

@@ -13,7 +13,7 @@ namespace ovc {
 /// Returns whether PATH leads to a program of this name.
 bool is_installed(const std::string& program);
 
-/// How a program ended.
+/// The end of a program.
 struct ProgramEnd {
     double seconds = 0;     // of wall clock
     double cpu_seconds = 0; // of all its threads

@@ -56,7 +56,7 @@ Result<const Experiment*> find_experiment(const std::string& name);
 /// Returns the words and then more of them.
 Words with_words(Words words, const Words& more);
 
-// What each experiment runs.
+// The runs of each experiment.
 std::vector<ReportRun> error_runs(const ReportPlan& plan);
 std::vector<ReportRun> samples_runs(const ReportPlan& plan);
 std::vector<ReportRun> tessellation_runs(const ReportPlan& plan);

@@ -75,7 +75,7 @@ void add_dragons(const ReportPlan& plan, std::vector<ReportRun>& runs) {
         const Words picture =
             with_words({scene, "--frames", frames(plan, 100)}, model(plan, "sphere-5"));
         add_systems(plan, scene, picture, kAll, plan.quick ? 2 : 15 * n, runs);
-        // As much memory as the thesis' GPU had.
+        // The thesis' GPU had as much memory.
         runs.push_back(runs.back());
         runs.back().key = scene + "--product-budget";
         runs.back().words.insert(runs.back().words.end(),

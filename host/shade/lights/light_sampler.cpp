@@ -75,7 +75,7 @@ void LightSampler::add_emitters(double reach) {
         if (material >= scene_.materials.size() || !scene_.materials[material].optics)
             continue;
         const Optics& optics = *scene_.materials[material].optics;
-        // What differs from place to place is left to the paths that find it.
+        // Light that differs from place to place is left to the paths that find it.
         if (const auto& maps = scene_.materials[material].maps; maps && maps->emission != kNone)
             continue;
         const double power = luminance(optics.emission) / (reach * reach);

@@ -19,7 +19,7 @@ struct AimedRays {
 enum class Side { Inside, Outside };
 enum class Target { Vertices, Edges, Any };
 
-/// Where rays at a closed mesh begin, and their targets.
+/// The origins of rays at a closed mesh, and their targets.
 struct Aim {
     Side side = Side::Inside;
     Target target = Target::Any;
