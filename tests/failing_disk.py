@@ -12,7 +12,7 @@ import tempfile
 
 SECONDS = 120  # a command that takes longer hangs
 RAYS = "".join(f"{x / 7} {y / 7} 9  0 0 -1\n" for x in range(-9, 10) for y in range(-9, 10))
-# What a disk says that cannot read or write.
+# The message of a disk that cannot read or write.
 REASON = r"Input/output error|No space left on device"
 
 

@@ -155,7 +155,7 @@ std::vector<ovc_ray> edge_rays(const Soup& soup, const std::vector<ovc_ray>& fir
     return rays;
 }
 
-/// What a call took.
+/// The time that a call took.
 struct Cost {
     double seconds = 0, cpu_seconds = 0;
 };

@@ -142,7 +142,7 @@ def compare_layers(overcast, folder):
 
 
 def processes_of(word):
-    """Returns the ids of the processes whose command line has the word, but for mpirun's."""
+    """Returns the ids of the processes whose command line has the word, except for mpirun's."""
     found = []
     for entry in pathlib.Path("/proc").iterdir():
         if not entry.name.isdigit():

@@ -62,7 +62,7 @@ TEST_F(Report, IsOneCommandThatRepeatsNothing) {
     EXPECT_THAT(bad.output, testing::HasSubstr("/dev/null is no kit.json"));
 }
 
-/// What is missing is said before anything is measured.
+/// Missing files are said before anything is measured.
 TEST_F(Report, RefusesFoldersAndFilesThatAreNotThere) {
     for (const char* option : {"--data", "--compare", "--kit"}) {
         const test::CommandResult made = make("", std::string(option) + " /nowhere");

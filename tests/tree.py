@@ -2,7 +2,7 @@
 """Lists the repository's files for the scripts beside this one, which check how they look."""
 import subprocess
 
-# What the names of built, rendered and downloaded files begin with; git ignores them too.
+# Names of built, rendered and downloaded files begin with these; git ignores them too.
 MADE = ("build", "out/", "data/")
 
 

@@ -73,7 +73,7 @@ TEST_F(Instances, SharePagesAndAnswerAlike) {
     const double seconds = asked("OVC_INSTANCES_SECONDS").value_or(8);
     // Scene 360 needs a stack of 36 words. In 587 a ray with candidates comes to a portal at which
     // it cannot be decided. In 1401 meshes share a triangle on a line, which gets an area by
-    // rounding where they are placed. In 4670 a matrix is singular but for roundings. In 5690 a ray
+    // rounding where they are placed. In 4670 a matrix is nearly singular. In 5690 a ray
     // comes from 1e15 sizes of a mesh away.
     std::vector<uint64_t> first = {360, 587, 1401, 4670, 5690};
     if (const auto seed = asked("OVC_INSTANCES_SEED"))

@@ -19,7 +19,7 @@ namespace {
 using test::api;
 using testing::HasSubstr;
 
-/// What a host keeps on its disk: the corners of a soup, and what was saved of it.
+/// The disk of a host: it has the corners of a soup, and the saved levels.
 class Disk {
 public:
     Disk(const Soup& soup, test::ArchiveMemory saved) : soup_(soup), saved_(std::move(saved)) {

@@ -79,7 +79,7 @@ private:
                     corners.push_back(vec3(x + right, y + up, 0) / float(squares) - 0.5f);
         return corners;
     }
-    /// Where the wind takes a point of a cloth.
+    /// Returns where the wind takes a point of a cloth.
     static dvec3 blown(const dvec3& p, const dvec3& wind) {
         return {p.x, p.y, wind.x * std::sin(6 * wind.y * p.x + 4 * wind.z * p.y)};
     }

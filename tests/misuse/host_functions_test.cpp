@@ -166,7 +166,7 @@ TEST_F(HostFunctions, AFilterStopsCallsOfEveryForm) {
 
 constexpr unsigned kNearest = 0x1f80, kUp = 0x5f80, kControl = 0xffc0; // of MXCSR
 
-/// How often a function was called, and how often in a mode that an earlier call had left.
+/// Counts of calls of a function, and of those in a mode that an earlier call had left.
 struct Modes {
     int calls = 0;
     int left = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the kernel's sources use of GLSL, in C++, so that they compile as they are but for the
+// The part of GLSL that the kernel's sources use, in C++. They compile as they are, except for the
 // spelling that glsl_as_cpp.py changes. All arithmetic is in float32, as in the kernel.
 #pragma once
 

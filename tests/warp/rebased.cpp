@@ -16,7 +16,7 @@ using namespace glsl;
 
 namespace {
 
-// Of the ray that this thread takes through the portal.
+// The state of the ray that this thread takes through the portal.
 thread_local std::array<uvec4, OVC_RAY_TEXELS> ray_texels;
 thread_local std::array<uvec4, OVC_PORTAL_TEXELS> portal_texels;
 

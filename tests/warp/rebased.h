@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How the kernel changes a ray's frame in pairs of floats, as C++.
+// The kernel's change of a ray's frame in pairs of floats, as C++.
 #pragma once
 
 #include "core/vec.h"

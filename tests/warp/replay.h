@@ -12,7 +12,7 @@
 
 namespace ovc {
 
-/// What a slot of a pass did: a ray, or a packet of two.
+/// The steps of a slot of a pass: of a ray, or of a packet of two.
 struct Steps {
     uint32_t prim = 0;        // w of the answer of the first ray
     uint32_t second_prim = 0; // of the second, if there is one

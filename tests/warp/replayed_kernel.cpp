@@ -19,7 +19,7 @@ using namespace glsl;
 
 namespace {
 
-// Of the slot that this thread replays.
+// The state of the slot that this thread replays.
 thread_local std::span<const ovc::uvec4> pool;
 thread_local std::span<const ovc::uvec4> ray_texels;
 thread_local ovc::Steps* steps = nullptr;

@@ -37,7 +37,7 @@ struct WarpVariant {
     bool refill = false;
 };
 
-/// What one kind of warps does, of all rays together.
+/// The work of one kind of warps, over all rays.
 struct WarpWork {
     uint64_t rays = 0;
     uint64_t warp_rounds = 0; // rounds of warps: as many as the lane that takes longest
