@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // fuzz_calls: a player that reads calls from bytes, beside a model that knows what each must
-// return.
+// return (tests/fuzz/call_model.h).
 #include "tests/fuzz/calls.h"
 
-#include "kdtree/test_soups.h"
-#include "plugin/overcast.h"
+#include "core/file/test_archive.h"
+#include "tests/fuzz/call_model.h"
 
 #include <algorithm>
 #include <array>
 #include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <deque>
 #include <map>
@@ -20,67 +19,7 @@
 namespace ovc {
 namespace {
 
-#define OVC_REQUIRE(condition) ((condition) ? void(0) : failed(#condition, __FILE__, __LINE__))
-
-[[noreturn]] void failed(const char* condition, const char* file, int line) {
-    std::fprintf(stderr, "%s:%d: not so: %s\n", file, line, condition);
-    std::abort();
-}
-
-const ovc_api& api() {
-    return *ovc_get_api(OVC_ABI_VERSION);
-}
-
-template <class T>
-T sized() {
-    T value{};
-    value.struct_size = sizeof(T);
-    return value;
-}
-
-/// Choices from bytes; zeros when they are used up.
-class Choices {
-public:
-    Choices(const uint8_t* data, size_t size) : next_(data), end_(data + size) {}
-
-    bool over() const { return next_ == end_; }
-    uint8_t byte() { return over() ? 0 : *next_++; }
-    uint32_t below(uint32_t count) { return byte() % count; }
-    bool once_in(uint32_t count) { return below(count) == count - 1; }
-    /// Returns one of few values, so that rays meet corners, edges and ties.
-    double coordinate() { return (int(byte()) - 128) / 16.0; }
-
-private:
-    const uint8_t* next_;
-    const uint8_t* end_;
-};
-
-/// Where a saved scene's bytes may lie.
-struct alignas(64) Line {
-    std::byte bytes[64];
-};
-
-/// A handle, and what the model knows of it.
-struct Slot {
-    ovc_scene scene = nullptr;
-    enum { Null, Open, Committed, Destroyed } state = Null;
-    bool tells_active = false;
-    Soup soup;
-    /// One per chunk: whose corners it has, its own or another's; OVC_NONE: it was removed.
-    std::vector<uint32_t> sources;
-    std::deque<Chunk> removed; // whose corners instances have still
-
-    /// Returns the result of a call that needs a committed scene, or any scene.
-    ovc_result expected(bool committed) const {
-        if (state == Null || state == Destroyed)
-            return OVC_ERROR_INVALID_ARGUMENT;
-        return state == Committed || !committed ? OVC_OK : OVC_ERROR_INVALID_STATE;
-    }
-    bool has_lost_meshes() const { return std::ranges::find(sources, OVC_NONE) != sources.end(); }
-    bool is_there(uint32_t mesh) const {
-        return mesh < sources.size() && sources[mesh] != OVC_NONE;
-    }
-};
+using namespace fuzz;
 
 /// Asked by commits and plans: stops some, and calls back, which must be refused.
 struct Progress {
@@ -148,13 +87,13 @@ private:
             config.progress_user = &progress_[size_t(&slot - slots_.data())];
             progress_[size_t(&slot - slots_.data())] = {&slot, choices_.byte()};
         }
-        if (kind & 32 && saved_bytes_) {
+        if (kind & 32 && !saved_.empty() && saved_.back().size() > 0) {
             config.saved = saved_.back().data();
-            config.saved_bytes = saved_bytes_;
+            config.saved_bytes = saved_.back().size();
         }
         const bool spoilt = kind >= 240;
         if (spoilt)
-            spoil(config);
+            spoil(config, choices_);
         ovc_scene scene = nullptr;
         const ovc_result result = api().create_scene(device_, &config, &scene);
         OVC_REQUIRE((result == OVC_OK) == (scene != nullptr));
@@ -167,31 +106,6 @@ private:
         slot.scene = scene;
         slot.state = Slot::Open;
         slot.tells_active = config.tell_active;
-    }
-
-    void spoil(ovc_scene_config& config) {
-        switch (choices_.below(7)) {
-        case 0:
-            config.struct_size = choices_.below(40);
-            break;
-        case 1:
-            config.precision = 2 + choices_.byte();
-            break;
-        case 2:
-            config.structure = 1 + choices_.byte();
-            break;
-        case 3:
-            config.level1 = 1 + choices_.byte();
-            break;
-        case 4:
-            config.reserved = 1;
-            break;
-        case 5:
-            config.kernel_variant = "packets,fragment";
-            break;
-        default:
-            config.leaves = config.leaf_triangles = 1;
-        }
     }
 
     void add_mesh() {
@@ -217,7 +131,9 @@ private:
             mesh.indices = indices.empty() ? nullptr : indices.data();
             mesh.triangle_count = indices.size() / 3;
         }
-        const bool spoilt = kind >= 240 && spoil(mesh);
+        const bool spoilt = kind >= 240;
+        if (spoilt)
+            spoil(mesh, choices_);
         uint32_t id = 0;
         const ovc_result result = api().add_mesh(slot.scene, &mesh, &id);
         const ovc_result expected = slot.expected(false);
@@ -325,27 +241,6 @@ private:
         check(api().purge(slot.scene), alive ? OVC_OK : OVC_ERROR_INVALID_ARGUMENT);
     }
 
-    bool spoil(ovc_mesh& mesh) {
-        switch (choices_.below(5)) {
-        case 0:
-            mesh.struct_size = choices_.below(40);
-            break;
-        case 1:
-            mesh.stride = 1 + choices_.below(11);
-            break;
-        case 2:
-            mesh.vertex_count = mesh.triangle_count = 7;
-            mesh.indices = nullptr;
-            break;
-        case 3:
-            mesh.origin[choices_.below(3)] = HUGE_VAL;
-            break;
-        default:
-            mesh.flags |= 128;
-        }
-        return true;
-    }
-
     void commit() {
         Slot& slot = any_slot();
         const ovc_result result = api().commit(slot.scene);
@@ -356,87 +251,10 @@ private:
             check(result, slot.expected(false));
     }
 
-    /// Most of them towards the scene: at corners, sides and insides of its triangles.
-    std::vector<ovc_ray> rays(const Slot& slot) {
-        std::vector<ovc_ray> made(choices_.below(40));
-        for (ovc_ray& ray : made) {
-            const dvec3 target = choices_.once_in(4) ? point() : point_of(slot);
-            const dvec3 org = point();
-            for (int axis = 0; axis < 3; ++axis) {
-                ray.org[axis] = org[axis];
-                ray.dir[axis] = target[axis] - org[axis];
-            }
-            ray.t_max = HUGE_VAL;
-            if (choices_.once_in(16))
-                (&ray.org[0])[choices_.below(8)] = choices_.below(2) ? NAN : -HUGE_VAL;
-        }
-        return made;
-    }
-    dvec3 point() {
-        const double x = choices_.coordinate(), y = choices_.coordinate();
-        return {x, y, choices_.coordinate()};
-    }
-    dvec3 point_of(const Slot& slot) {
-        if (slot.soup.chunks.empty())
-            return point();
-        const uint32_t mesh = choices_.below(uint32_t(slot.soup.chunks.size()));
-        if (slot.soup.chunks[mesh].size() == 0)
-            return point();
-        const uint32_t prim = choices_.below(uint32_t(slot.soup.chunks[mesh].size()));
-        const Triangle triangle = slot.soup.triangle({mesh, prim});
-        const double u = choices_.below(3) / 2.0, v = (1 - u) * choices_.below(3) / 2.0;
-        return (1 - u - v) * triangle[0] + u * triangle[1] + v * triangle[2];
-    }
-
-    /// Returns a triangle to skip for each ray, which for most rays is none.
-    std::vector<ovc_triangle> skips(const Slot& slot, size_t count) {
-        std::vector<ovc_triangle> made(count, {OVC_NONE, OVC_NONE});
-        if (!slot.soup.chunks.empty())
-            for (ovc_triangle& skip : made)
-                if (choices_.once_in(4))
-                    skip = {choices_.below(uint32_t(slot.soup.chunks.size()) + 1),
-                            choices_.below(24)}; // a triangle that may not exist
-        return made;
-    }
-
-    /// Returns the answer of a loop over all triangles.
-    static Hit truth(const Slot& slot, const ovc_ray& ray, const ovc_triangle& skip,
-                     const HitPlace& after = {}) {
-        Ray asked;
-        std::memcpy(static_cast<void*>(&asked), &ray, sizeof asked);
-        if (!asked.valid())
-            return {};
-        const PreparedRay prepared(asked, {TriangleId{skip.mesh, skip.prim}, after});
-        const bool named = after.id.mesh < slot.soup.chunks.size() &&
-                           after.id.prim < slot.soup.chunks[after.id.mesh].size();
-        const Triangle triangle_after = named ? slot.soup.triangle(after.id) : Triangle();
-        Nearest nearest(prepared, named && is_finite(triangle_after) ? &triangle_after : nullptr);
-        for (uint32_t mesh = 0; mesh < slot.soup.chunks.size(); ++mesh)
-            for (uint32_t prim = 0; prim < slot.soup.chunks[mesh].size(); ++prim) {
-                const Triangle triangle = slot.soup.triangle({mesh, prim});
-                if (is_finite(triangle))
-                    nearest.offer(triangle, {mesh, prim});
-            }
-        return nearest.hit();
-    }
-    static bool is_finite(const Triangle& triangle) {
-        for (int corner = 0; corner < 3; ++corner)
-            for (int axis = 0; axis < 3; ++axis)
-                if (!std::isfinite(triangle[corner][axis]))
-                    return false;
-        return true;
-    }
-    static void check_hit(const Slot& slot, const ovc_ray& ray, const ovc_triangle& skip,
-                          const ovc_hit& hit) {
-        const Hit expected = truth(slot, ray, skip);
-        OVC_REQUIRE(hit.mesh == expected.id.mesh && hit.prim == expected.id.prim);
-        OVC_REQUIRE(std::memcmp(&hit.t, &expected.t, sizeof hit.t) == 0);
-    }
-
     void intersect() {
         Slot& slot = any_slot();
-        const std::vector<ovc_ray> asked = rays(slot);
-        const std::vector<ovc_triangle> skip = skips(slot, asked.size());
+        const std::vector<ovc_ray> asked = rays_to(slot, choices_);
+        const std::vector<ovc_triangle> skip = skips(slot, asked.size(), choices_);
         std::vector<ovc_hit> hits(asked.size());
         std::vector<uint32_t> leaf(asked.size()), passes(asked.size()), flagged(asked.size());
         auto query = sized<ovc_query>();
@@ -453,13 +271,13 @@ private:
             api().intersect(slot.scene, asked.data(), asked.size(), hits.data(), &query);
         check(result, spoilt ? OVC_ERROR_INVALID_ARGUMENT : slot.expected(true));
         for (size_t i = 0; result == OVC_OK && i < asked.size(); ++i)
-            check_hit(slot, asked[i], skip[i], hits[i]);
+            slot.check_hit(asked[i], skip[i], hits[i]);
     }
 
     /// Asks for one hit behind the other, from a place that may be none, and for all at once.
     void intersect_behind() {
         Slot& slot = any_slot();
-        const std::vector<ovc_ray> asked = rays(slot);
+        const std::vector<ovc_ray> asked = rays_to(slot, choices_);
         std::vector<ovc_hit> hits(asked.size(), {-HUGE_VAL, 0, 0, OVC_NONE, OVC_NONE});
         for (ovc_hit& place : hits)
             if (choices_.once_in(4))
@@ -479,7 +297,8 @@ private:
             more = false;
             for (size_t i = 0; i < asked.size(); ++i) {
                 Hit place{before[i].t, 0, 0, {before[i].mesh, before[i].prim}};
-                const Hit expected = truth(slot, asked[i], {OVC_NONE, OVC_NONE}, HitPlace(place));
+                const Hit expected =
+                    slot.nearest_hit(asked[i], {OVC_NONE, OVC_NONE}, HitPlace(place));
                 OVC_REQUIRE(hits[i].mesh == expected.id.mesh && hits[i].prim == expected.id.prim);
                 OVC_REQUIRE(std::memcmp(&hits[i].t, &expected.t, sizeof expected.t) == 0);
                 found[i] += expected.is_hit();
@@ -492,8 +311,8 @@ private:
 
     void occluded() {
         Slot& slot = any_slot();
-        const std::vector<ovc_ray> asked = rays(slot);
-        const std::vector<ovc_triangle> skip = skips(slot, asked.size());
+        const std::vector<ovc_ray> asked = rays_to(slot, choices_);
+        const std::vector<ovc_triangle> skip = skips(slot, asked.size(), choices_);
         std::vector<uint8_t> answers(asked.size(), 7);
         auto query = sized<ovc_query>();
         query.skip = skip.data();
@@ -501,19 +320,19 @@ private:
             api().occluded(slot.scene, asked.data(), asked.size(), answers.data(), &query);
         check(result, slot.expected(true));
         for (size_t i = 0; result == OVC_OK && i < asked.size(); ++i)
-            OVC_REQUIRE(answers[i] == truth(slot, asked[i], skip[i]).is_hit());
+            OVC_REQUIRE(answers[i] == slot.nearest_hit(asked[i], skip[i]).is_hit());
     }
 
     void ask_one_by_one() {
         Slot& slot = any_slot();
-        for (const ovc_ray& ray : rays(slot)) {
+        for (const ovc_ray& ray : rays_to(slot, choices_)) {
             ovc_hit hit{};
             uint8_t shadow = 7;
             check(api().intersect1(slot.scene, &ray, &hit, nullptr), slot.expected(true));
             check(api().occluded1(slot.scene, &ray, &shadow, nullptr), slot.expected(true));
             if (slot.state != Slot::Committed)
                 return;
-            check_hit(slot, ray, {OVC_NONE, OVC_NONE}, hit);
+            slot.check_hit(ray, {OVC_NONE, OVC_NONE}, hit);
             OVC_REQUIRE(shadow == (hit.mesh != OVC_NONE));
         }
     }
@@ -521,7 +340,7 @@ private:
     /// Waits for it, cancels it, or destroys its scene.
     void submit() {
         Slot& slot = any_slot();
-        const std::vector<ovc_ray> asked = rays(slot);
+        const std::vector<ovc_ray> asked = rays_to(slot, choices_);
         std::vector<ovc_hit> hits(asked.size());
         ovc_ticket ticket = nullptr;
         const ovc_result submitted = api().submit_intersect(slot.scene, asked.data(), asked.size(),
@@ -540,7 +359,7 @@ private:
             return check(result, OVC_ERROR_INVALID_ARGUMENT);
         OVC_REQUIRE(result == OVC_OK || (result == OVC_ERROR_CANCELLED && (end == 1 || end == 2)));
         for (size_t i = 0; result == OVC_OK && i < asked.size(); ++i)
-            check_hit(slot, asked[i], {OVC_NONE, OVC_NONE}, hits[i]);
+            slot.check_hit(asked[i], {OVC_NONE, OVC_NONE}, hits[i]);
         uint32_t done = 0;
         check(api().poll(ticket, &done, nullptr), OVC_OK);
         OVC_REQUIRE(done == 1);
@@ -568,13 +387,12 @@ private:
     void save() {
         Slot& slot = any_slot();
         struct Sink {
-            std::vector<std::byte> bytes;
+            test::ArchiveMemory memory;
             int parts_left;
         } sink{{}, choices_.once_in(4) ? int(choices_.below(8)) : 1000000};
         const auto write = [](void* user, const void* bytes, size_t size) {
             auto& to = *static_cast<Sink*>(user);
-            const std::byte* first = static_cast<const std::byte*>(bytes);
-            to.bytes.insert(to.bytes.end(), first, first + size);
+            to.memory.append({static_cast<const std::byte*>(bytes), size});
             return int(to.parts_left-- == 0);
         };
         const ovc_result result = api().save(slot.scene, write, &sink);
@@ -585,11 +403,9 @@ private:
         if (result != OVC_OK)
             return;
         // Kept, perhaps damaged, for scenes of the same meshes or others.
-        if (choices_.below(2) && !sink.bytes.empty())
-            sink.bytes[sink.bytes.size() * choices_.byte() / 256] ^= std::byte(choices_.byte());
-        saved_bytes_ = sink.bytes.size();
-        std::vector<Line>& lines = saved_.emplace_back(saved_bytes_ / sizeof(Line) + 1);
-        std::memcpy(lines.data(), sink.bytes.data(), saved_bytes_);
+        test::ArchiveMemory& memory = saved_.emplace_back(std::move(sink.memory));
+        if (choices_.below(2) && memory.size() > 0)
+            memory.data()[memory.size() * choices_.byte() / 256] ^= std::byte(choices_.byte());
     }
 
     /// The host of a stream pushes some rays, checks each answer, and pushes again for some.
@@ -601,7 +417,7 @@ private:
         std::vector<int> answers{};
 
         int push(ovc_stream stream) {
-            const std::vector<ovc_ray> asked = player.rays(slot);
+            const std::vector<ovc_ray> asked = rays_to(slot, player.choices_);
             const bool any_hit = player.choices_.below(2);
             std::vector<uint64_t> tokens;
             for (const ovc_ray& ray : asked) {
@@ -628,9 +444,9 @@ private:
                 OVC_REQUIRE(any_hit == (told->hits == nullptr));
                 if (any_hit)
                     OVC_REQUIRE(told->occluded[i] ==
-                                truth(self.slot, ray, {OVC_NONE, OVC_NONE}).is_hit());
+                                self.slot.nearest_hit(ray, {OVC_NONE, OVC_NONE}).is_hit());
                 else
-                    check_hit(self.slot, ray, {OVC_NONE, OVC_NONE}, told->hits[i]);
+                    self.slot.check_hit(ray, {OVC_NONE, OVC_NONE}, told->hits[i]);
             }
             if (self.player.choices_.once_in(8))
                 self.ask_another();
@@ -639,7 +455,7 @@ private:
         /// Another scene may have no room beside the stream's.
         void ask_another() {
             const Slot& other = player.any_slot();
-            const std::vector<ovc_ray> asked = player.rays(other);
+            const std::vector<ovc_ray> asked = rays_to(other, player.choices_);
             if (&other == &slot)
                 return;
             std::vector<ovc_hit> hits(asked.size());
@@ -650,7 +466,7 @@ private:
             else
                 player.check(result, other.expected(true));
             for (size_t i = 0; result == OVC_OK && i < asked.size(); ++i)
-                check_hit(other, asked[i], {OVC_NONE, OVC_NONE}, hits[i]);
+                other.check_hit(asked[i], {OVC_NONE, OVC_NONE}, hits[i]);
         }
     };
 
@@ -702,9 +518,10 @@ private:
             OVC_REQUIRE(result == OVC_OK || result == OVC_ERROR_INVALID_STATE ||
                         result == OVC_ERROR_INVALID_ARGUMENT);
             for (size_t i = 0; result == OVC_OK && i < with.size(); ++i)
-                check_hit(traced, with[i], {OVC_NONE, OVC_NONE}, hits[i]);
+                traced.check_hit(with[i], {OVC_NONE, OVC_NONE}, hits[i]);
         };
-        const std::vector<ovc_ray> asked = rays(slot), asked_other = rays(other);
+        const std::vector<ovc_ray> asked = rays_to(slot, choices_),
+                                   asked_other = rays_to(other, choices_);
         const bool destroys = choices_.below(2);
         std::thread first([&] { trace(slot, asked); }), second([&] { trace(other, asked_other); });
         if (destroys)
@@ -723,8 +540,7 @@ private:
     std::set<std::pair<const Slot*, uint32_t>> shared_;
     std::map<std::pair<const Slot*, uint32_t>, Transform> first_; // what instances were placed by
     std::deque<std::vector<float>> positions_;                    // shared ones are used in place
-    std::deque<std::vector<Line>> saved_;
-    size_t saved_bytes_ = 0;
+    std::deque<test::ArchiveMemory> saved_;
 };
 
 } // namespace
