@@ -26,9 +26,9 @@ double up(double x) {
 }
 
 /// Returns a t at which coordinate `axis` of the ray is within `error` of `goal`, as a sum of
-/// doubles, because one double has too few bits where the ray comes from afar. Returns nothing
-/// where that t lies beyond all doubles.
-std::optional<Exact> t_at(const Ray& ray, int axis, double goal, double error) {
+/// doubles, because one double has too few bits where the ray comes from afar. Where that t lies
+/// beyond all doubles, as the middle of a large scene may, returns one on the way there.
+Exact t_at(const Ray& ray, int axis, double goal, double error) {
     assert(ray.dir[axis] != 0 && error >= 0);
     constexpr int kMaxSteps = 64; // each adds 52 bits, of 2,100 that doubles span
     const Exact dir(ray.dir[axis]);
@@ -41,7 +41,7 @@ std::optional<Exact> t_at(const Ray& ray, int axis, double goal, double error) {
         t = t + step;
         rest = rest - step * dir;
     }
-    return std::nullopt;
+    return t;
 }
 
 /// Returns the direction without the components that do not move the ray within a scene.
@@ -70,18 +70,18 @@ Approach::Approach(const PreparedRay& p, const Box& bounds) : p_(p) {
     if (bounds.empty() || is_near(p, bounds))
         return;
     const double error = 0x1p-60 * max_component(bounds.extent());
-    const std::optional<Exact> t = t_at(p.ray, p.kz, bounds.center()[p.kz], error);
+    const Exact t = t_at(p.ray, p.kz, bounds.center()[p.kz], error);
     Ray ray = p.ray;
-    for (int axis = 0; t && axis < 3; ++axis)
-        ray.org[axis] = rounded(Exact(p.ray.org[axis]) + *t * Exact(p.ray.dir[axis]));
+    for (int axis = 0; axis < 3; ++axis)
+        ray.org[axis] = rounded(Exact(p.ray.org[axis]) + t * Exact(p.ray.dir[axis]));
     const int exponent = std::ilogb(p.ray.dir[p.kz]);
     const Exact unit(std::ldexp(1.0, -exponent)); // of t along the new direction
     ray.dir = glm::ldexp(main_direction(p.ray.dir), glm::ivec3(-exponent));
-    ray.t_min = t ? down(Exact::quotient(Exact(p.ray.t_min) - *t, unit)) : 0;
-    ray.t_max = t ? up(Exact::quotient(Exact(p.ray.t_max) - *t, unit)) : 0;
+    ray.t_min = down(Exact::quotient(Exact(p.ray.t_min) - t, unit));
+    ray.t_max = up(Exact::quotient(Exact(p.ray.t_max) - t, unit));
     moved_.emplace(ray, p.skip);
     moved_->org_error = 0x1p-52 * max_component(glm::abs(ray.org)) + 0x1p-1022;
-    limit_ = t ? ray.t_max : -kLargest;
+    limit_ = ray.t_max;
 }
 
 void Approach::note_hit(const Triangle& triangle) {

@@ -94,7 +94,7 @@ TEST_F(Approaching, FewLeavesAreOnTheWayHoweverFarARayComesFrom) {
 
 /// The way through the scene takes longer than the largest double tells.
 TEST(ApproachingSlowly, FindsWhatLiesBeforeTheLargestDouble) {
-    for (const double x : {-1.1e8, -1.5e8, -2.6e8, -4e8, 8e8}) {
+    for (const double x : {-1.1e8, -1.5e8, -2.6e8, -4e8, 8e8, -1e11, 1e15, -1e30}) {
         const Soup soup = test::one_chunk({vec3(1, -1, -1), vec3(1, 3, -1), vec3(1, -1, 3),
                                            vec3(x, 5, 5), vec3(x, 9, 5), vec3(x, 5, 9)});
         Box bounds;
