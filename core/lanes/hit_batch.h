@@ -27,10 +27,11 @@ public:
     void finish(Found&& found, Unclear&& unclear) {
         batch_.finish(round_hits, [&](const HitLanes& lanes, int lane, const Entry& entry) {
             const double t = lanes.t[lane], u = lanes.u[lane], v = lanes.v[lane];
-            // Nearer to the third side, roundings of u and v may hide that the ray passes it.
-            const bool inside = u >= 0 && v >= 0 && u + v <= 1 - 0x1p-50;
+            // Nearer to a side, or at an end of the ray, roundings may hide that the ray passes it,
+            // or ends before.
+            const bool inside = u > 0 && v > 0 && u + v <= 1 - 0x1p-50;
             const Ray& ray = lanes.ray(lane);
-            if (lanes.known[lane] == HitLanes::kAll && inside && t >= ray.t_min && t <= ray.t_max)
+            if (lanes.known[lane] == HitLanes::kAll && inside && t > ray.t_min && t < ray.t_max)
                 found(Hit{t, u, v, entry.id}, entry.tag);
             else
                 unclear(entry.tag);

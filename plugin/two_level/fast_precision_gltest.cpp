@@ -115,6 +115,28 @@ TEST_F(TwoLevelGl, FastHitsBehindOneAnotherAreTrueAndComeOnce) {
         }
 }
 
+TEST_F(TwoLevelGl, FastHitsLieWithinTheEndsOfTheRay) {
+    const Soup soup = test::random_soup(55, 400, 0.3);
+    const auto structure = build(soup, {.certify = false});
+    ASSERT_TRUE(structure);
+    test::Random random(56);
+    std::vector<Ray> rays(10000);
+    for (Ray& ray : rays) {
+        const Triangle on = soup.triangle({0, uint32_t(random.below(400))});
+        ray.org = random.point(-3, 3);
+        ray.dir = 0.25 * on[0] + 0.25 * on[1] + 0.5 * on[2] - ray.org;
+        (random.below(2) ? ray.t_min : ray.t_max) = 1; // there, but for a rounding
+    }
+    std::vector<Hit> hits(rays.size());
+    ASSERT_TRUE(ok(structure->intersect(rays, {}, hits)));
+    size_t at_end = 0;
+    for (size_t i = 0; i < rays.size(); ++i) {
+        expect_true(soup, rays[i], hits[i], {});
+        at_end += hits[i].t == 1;
+    }
+    EXPECT_GT(at_end, 100u);
+}
+
 TEST_F(TwoLevelGl, FastRaysBehindMaskedHitsDoNotSeeWhatTheySkip) {
     Soup soup = test::random_soup(52, 400, 0.3);
     Soup other = test::random_soup(53, 400, 0.3);
