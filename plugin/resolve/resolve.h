@@ -239,6 +239,8 @@ private:
             return states;
         for (size_t lane = 0; lane < rays.size(); ++lane) {
             const Ray ray = query_.rays[rays[lane]];
+            if (!ray.valid())
+                continue; // exact arithmetic takes no infinity
             const Exclusion without = exclusion(rays[lane]);
             states.rays.from[lane] = PreparedRay::behind(ray, without.after).t_min;
             states.skip[lane] = scene_.number_to_skip(ray, without);

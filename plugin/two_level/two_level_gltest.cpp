@@ -205,6 +205,23 @@ TEST_F(TwoLevelGl, RaysThatStartOnASurfaceAreNotFlaggedForIt) {
         EXPECT_TRUE(test::same(hits[i], test::brute_force(soup, ids, rays[i], skip[i])));
 }
 
+TEST_F(TwoLevelGl, InvalidRaysMissBehindAnyPlace) {
+    const Soup soup = test::random_soup(8, 300, 0.3);
+    auto rays = test::rays_from_outside(57, 300);
+    std::vector<Hit> hits(rays.size());
+    const auto structure = build(soup, {});
+    ASSERT_TRUE(structure);
+    ASSERT_TRUE(ok(structure->intersect(rays, {}, hits)));
+    const double worst[] = {std::numeric_limits<double>::quiet_NaN(),
+                            std::numeric_limits<double>::infinity(), -HUGE_VAL};
+    for (size_t i = 0; i < rays.size(); ++i)
+        (i % 2 ? rays[i].org : rays[i].dir)[int(i % 3)] = worst[i / 6 % 3];
+    const std::vector<Hit> after = hits;
+    ASSERT_TRUE(ok(structure->intersect(rays, Exclusions({}, after), hits)));
+    EXPECT_FALSE(std::ranges::any_of(hits, &Hit::is_hit));
+    EXPECT_EQ(structure->statistics().invalid_rays, rays.size());
+}
+
 TEST_F(TwoLevelGl, KeepsToTheBudgetByMovingPages) {
     const Soup soup = test::random_soup(8, 60000, 0.01);
     const uint64_t all = build(soup, {})->scene().level2_bytes();
