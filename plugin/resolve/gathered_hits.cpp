@@ -6,6 +6,7 @@
 #include "core/exact/refined.h"
 #include "kdtree/approach.h"
 #include "plugin/fallback/scene_walk.h"
+#include "plugin/resolve/sifting.h"
 
 #include <algorithm>
 #include <optional>
@@ -100,6 +101,13 @@ std::vector<Hit> gathered_hits(const BuiltScene& scene, const PreparedRay& p) {
     for (const uint32_t number : numbers_near(scene, p))
         gathered.add_set(scene.numbers.id(number));
     return gathered.sorted();
+}
+
+Hit first_counting_hit(const BuiltScene& scene, const PreparedRay& p, const RaySieve& sieve) {
+    for (const Hit& hit : gathered_hits(scene, p))
+        if (counts(scene.soup, sieve, hit))
+            return hit;
+    return {};
 }
 
 } // namespace ovc

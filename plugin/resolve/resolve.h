@@ -10,6 +10,7 @@
 #include "gpu/trace/tracer.h"
 #include "plugin/fallback/exact_fallback.h"
 #include "plugin/resolve/candidates.h"
+#include "plugin/resolve/gathered_hits.h"
 #include "plugin/resolve/query.h"
 #include "plugin/resolve/tracing.h"
 
@@ -211,6 +212,11 @@ public:
     void answer_exactly(uint32_t i) {
         if (tracing_.watch.keeps_on())
             query_.set(i, trace_exactly<Query::kAnyHit>(scene_, prepared(i)));
+    }
+    /// Answers ray i, which has a sieve, for good with its first hit that counts, likewise.
+    void answer_sifted(uint32_t i) {
+        if (tracing_.watch.keeps_on())
+            query_.set(i, first_counting_hit(scene_, prepared(i), query_.without.sieves[i]));
     }
 
 private:

@@ -127,13 +127,14 @@ Hit TwoLevel::nearest_on_cpu(const Ray& ray, const Exclusion& without,
                              const RaySieve& sieve) const {
     assert(ray.valid());
     Exclusion more = without;
-    for (;;) {
+    for (uint8_t passed_by = 0; passed_by < kMaxPassedBy; ++passed_by) {
         const Hit hit = answer_one</* kAnyHit= */ false>(scene_, ray, more);
         if (!hit.is_hit() || sieve.passes_all() || counts(scene_.soup, sieve, hit))
             return hit;
         more.after = HitPlace(hit);
         more.after.is_certain = true;
     }
+    return first_counting_hit(scene_, PreparedRay(ray, more), sieve);
 }
 
 bool TwoLevel::occluded_on_cpu(const Ray& ray, const Exclusion& without,

@@ -222,6 +222,37 @@ TEST_F(TwoLevelGl, InvalidRaysMissBehindAnyPlace) {
     EXPECT_EQ(structure->statistics().invalid_rays, rays.size());
 }
 
+TEST_F(TwoLevelGl, PassesByManyHitsInOnePointAtOnce) {
+    test::Random random(58);
+    std::vector<vec3> corners;
+    for (int i = 0; i < 3000; ++i)
+        for (const vec3& v : {vec3(-2, -2, 0), vec3(2, -2, 0), vec3(0, 2, 0)})
+            corners.push_back(v * float(random(1, 2)));
+    Soup soup = test::one_chunk(std::move(corners));
+    soup.chunks.push_back(Chunk::owning({0, 0, -1}, {{-2, -2, 0}, {2, -2, 0}, {0, 2, 0}}));
+    soup.chunks[0].set_mask(1);
+    soup.chunks[1].set_mask(2);
+    for (const size_t count : {size_t(1), size_t(200)}) {
+        const auto structure = build(soup, {});
+        ASSERT_TRUE(structure);
+        std::vector<Ray> rays(count);
+        for (Ray& ray : rays)
+            ray = {{random(-0.1, 0.1), random(-0.1, 0.1), 1}, 0, {0, 0, -1}};
+        const std::vector<uint32_t> masks(count, 2);
+        Exclusions without;
+        without.sieves.masks = masks;
+        std::vector<Hit> hits(count);
+        ASSERT_TRUE(ok(structure->intersect(rays, without, hits)));
+        for (size_t i = 0; i < count; ++i) {
+            EXPECT_EQ(hits[i].id, (TriangleId{1, 0})) << "ray " << i;
+            const Hit one = structure->nearest_on_cpu(rays[i], {}, without.sieves[i]);
+            EXPECT_TRUE(test::same(one, hits[i])) << "ray " << i;
+        }
+        const ovc_statistics& told = structure->statistics();
+        EXPECT_LT(told.ray_visits + told.stragglers, 50 * count) << "each hit took a step";
+    }
+}
+
 TEST_F(TwoLevelGl, KeepsToTheBudgetByMovingPages) {
     const Soup soup = test::random_soup(8, 60000, 0.01);
     const uint64_t all = build(soup, {})->scene().level2_bytes();

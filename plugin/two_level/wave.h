@@ -25,18 +25,23 @@ public:
           passes_(passes),
           resolver_(tracing, query, /* are_whole= */ false),
           states_(query.rays.size()),
+          passed_by_(query.has_sieves() ? query.rays.size() : 0),
           waiting_(tracing.scene.pages.size()) {}
 
     /// Replaces the query where its arrays have moved or have more rays than before.
     void show(const Query& query) {
         resolver_.show(query);
         states_.resize(query.rays.size());
+        passed_by_.resize(query.has_sieves() ? query.rays.size() : 0);
     }
 
     /// Starts these rays, none of which is under way.
     void start(std::span<const uint32_t> rays) {
         parallel_for(rays.size(), kRaysPerTask,
                      [&](size_t from, size_t to) { start_some(rays.subspan(from, to - from)); });
+        if (resolver_.query().has_sieves())
+            for (const uint32_t i : rays)
+                passed_by_[i] = 0;
         send_on(rays);
     }
 
@@ -163,7 +168,8 @@ private:
         }
     }
 
-    /// Starts those of the rays anew whose hit does not count, behind that hit.
+    /// Starts those of the rays anew whose hit does not count, behind that hit; answers those for
+    /// good that have passed by many.
     void sift(std::span<const uint32_t> rays) {
         std::vector<uint32_t> answered(rays.begin(), rays.end());
         std::vector<Hit> hits;
@@ -178,14 +184,26 @@ private:
                 hits.push_back(resolver_.query().hit(i));
             const std::vector<uint8_t> counts = counting_hits(
                 tracing_.scene.soup, resolver_.query().without.sieves, answered, hits);
+            std::vector<uint32_t> left;
             size_t passed_by = 0;
-            for (size_t j = 0; j < answered.size(); ++j)
-                if (!counts[j]) {
-                    resolver_.query().pass_by(answered[j]);
-                    start_some(std::span(&answered[j], 1)); // the exact fallback may answer it
-                    answered[passed_by++] = answered[j];
+            for (size_t j = 0; j < answered.size(); ++j) {
+                const uint32_t i = answered[j];
+                if (counts[j])
+                    continue;
+                resolver_.query().pass_by(i);
+                // Where active pages are told, rays go through them on the GPU.
+                if (++passed_by_[i] >= kMaxPassedBy && !tracing_.options.tell_active) {
+                    left.push_back(i);
+                    continue;
                 }
+                start_some(std::span(&i, 1)); // the exact fallback may answer it
+                answered[passed_by++] = i;
+            }
             answered.resize(passed_by);
+            parallel_for(left.size(), 1, [&](size_t from, size_t to) {
+                for (size_t j = from; j < to; ++j)
+                    resolver_.answer_sifted(left[j]);
+            });
         }
     }
 
@@ -205,9 +223,10 @@ private:
     const Tracing tracing_;
     PassRunner& passes_;
     Resolver<Query> resolver_;
-    std::vector<State> states_;   // per ray
-    std::vector<uint32_t> ready_; // rays for the next passes
-    size_t loaded_ = 0;           // rays in batches
+    std::vector<State> states_;      // per ray
+    std::vector<uint8_t> passed_by_; // hits of each ray, where rays have sieves
+    std::vector<uint32_t> ready_;    // rays for the next passes
+    size_t loaded_ = 0;              // rays in batches
     std::vector<uint32_t> finished_;
     Waiting waiting_;
 };
