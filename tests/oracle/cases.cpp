@@ -127,6 +127,19 @@ ovc_ray from_afar(Random& random, std::span<const Triangle> triangles) {
     return ray;
 }
 
+/// Returns a ray of the shortest directions, of which doubles tell no t beyond 1.8e8 away.
+ovc_ray barely_moving(Random& random, std::span<const Triangle> triangles) {
+    const double distances[] = {1, 1e3, 1e7, 1e8};
+    const Corner at = target(random, triangles);
+    const Corner away = random.point(distances[random.below(std::size(distances))]);
+    ovc_ray ray = ray_of(at + away, -1.0 * away);
+    const auto by_size = [](double a, double b) { return std::abs(a) < std::abs(b); };
+    const double longest = std::abs(*std::max_element(ray.dir, ray.dir + 3, by_size));
+    for (double& x : ray.dir)
+        x *= 1.5e-300 / longest;
+    return ray;
+}
+
 ovc_ray from_the_lattice(Random& random, std::span<const Triangle> triangles) {
     Corner org = random.lattice(), dir = random.lattice();
     if (random.below(2))
@@ -316,6 +329,14 @@ std::vector<Mesh> shared_instances(Random& random) {
     return {mesh};
 }
 
+/// Makes instances so far apart that most are out of reach of a ray that barely moves.
+std::vector<Mesh> spread_instances(Random& random) {
+    std::vector<Mesh> meshes = shared_instances(random);
+    for (std::array<double, 12>& place : meshes[0].instances)
+        place[3 + 4 * random.below(3)] = std::pow(10.0, double(random.below(31)));
+    return meshes;
+}
+
 constexpr Case kCases[] = {
     {"soup", soup, aimed},
     {"soup, ends of rays", soup, with_ends},
@@ -336,6 +357,8 @@ constexpr Case kCases[] = {
     {"instances", instances, aimed},
     {"instances, ends of rays", instances, with_ends},
     {"shared instances", shared_instances, aimed},
+    {"spread instances", spread_instances, aimed},
+    {"spread instances, barely moving", spread_instances, barely_moving},
 };
 
 } // namespace
