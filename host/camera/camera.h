@@ -8,6 +8,7 @@
 #include "core/result.h"
 #include "core/scene.h"
 #include "host/camera/face_rays.h"
+#include "host/film/picture_part.h"
 
 #include <cstdint>
 #include <optional>
@@ -23,14 +24,6 @@ inline constexpr double kFarthest = 1e100;
 /// that is not seen edge on, and its lens is sharp somewhere in front of it. The error does not say
 /// whose camera it is.
 Result<Done> check_camera(const Camera& camera);
-
-/// A part of a larger picture, at `left` and `top` pixels from its left and upper edge.
-struct PicturePart {
-    ImageSize picture;
-    uint32_t left = 0;
-    uint32_t top = 0;
-    ImageSize size;
-};
 
 /// A camera prepared for an image of width x height pixels, which may be a part of its picture.
 class Pinhole {
@@ -53,6 +46,8 @@ public:
             uint32_t sample = 0) const;
 
     bool has_lens() const { return lens_.has_value(); }
+
+    const PicturePart& part() const { return part_; }
 
     uint32_t width() const { return part_.size.width; }
     uint32_t height() const { return part_.size.height; }

@@ -47,7 +47,9 @@ dvec2 sample_place(uint32_t i, uint32_t samples) {
 /// Returns the cone of the rays through a pixel in the middle of the picture, of which there are so
 /// many.
 static Cone cone_of(const Pinhole& pinhole, uint32_t samples) {
-    const uint32_t x = pinhole.width() / 2, y = pinhole.height() / 2;
+    const PicturePart& part = pinhole.part();
+    // The middle may lie outside of the part; then these wrap around, and the pinhole's sums back.
+    const uint32_t x = part.picture.width / 2 - part.left, y = part.picture.height / 2 - part.top;
     const Ray a = pinhole.ray(x, y, dvec2(0, 0.5)), b = pinhole.ray(x, y, dvec2(1, 0.5));
     const double length_a = glm::length(a.dir), length_b = glm::length(b.dir);
     if (!(length_a > 0) || !(length_b > 0))
@@ -118,7 +120,7 @@ Ray ray_through(const Pinhole& pinhole, const dvec2& point) {
 }
 
 CameraRays::Place CameraRays::sampled(uint32_t pixel, uint32_t sample) const {
-    const PathSampler random(sampling_.seed, pixel, sample);
+    const PathSampler random(sampling_.seed, pinhole_.part().number_in_picture(pixel), sample);
     const dvec2 u = sampling_.random_places ? random.pair(kPlace) : sample_place(sample, samples_);
     const bool is_blurred = pinhole_.has_lens() && (samples_ > 1 || sampling_.random_places);
     return {pixel,

@@ -66,6 +66,29 @@ TEST(PathModes, MakeTheSameBitsOfTheSameSeed) {
     EXPECT_NE(batched.pixels, picture(scene, *backend, RenderMode::Mixed, 6, 4).pixels);
 }
 
+/// A part of a picture is that part of it, noise and all.
+TEST(PathModes, APartHasTheNoiseOfTheWholePicture) {
+    const Scene scene = corner();
+    const std::unique_ptr<Backend> backend = make_cpu_backend(scene.soup);
+    Camera camera;
+    camera.eye = {0.5, 2, 6};
+    camera.target = {0, 0.9, 0};
+    camera.fov_degrees = 45;
+    camera.lens = Lens{dvec3(0.1, 0, 0), dvec3(0, 0.1, 0), 5};
+    RenderOptions options;
+    options.integrator = IntegratorKind::Path;
+    options.max_depth = 8;
+    Film whole(kPathSide, kPathSide, 4);
+    ASSERT_TRUE(render_picture(scene, camera, *backend, options, {}, whole));
+    options.part = {{kPathSide, kPathSide}, 7, 9, {6, 5}};
+    Film part(6, 5, 4);
+    ASSERT_TRUE(render_picture(scene, camera, *backend, options, {}, part));
+    const Image all = whole.image(), some = part.image();
+    for (uint32_t y = 0; y < 5; ++y)
+        for (uint32_t x = 0; x < 6; ++x)
+            EXPECT_EQ(some.pixels[y * 6 + x], all.pixels[(y + 9) * kPathSide + x + 7]) << x << y;
+}
+
 /// The mean, and its variance, of each pixel over pictures of different seeds.
 struct Pixels {
     std::vector<double> mean, variance;

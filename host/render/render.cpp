@@ -62,10 +62,11 @@ RenderReport& RenderReport::operator+=(const RenderReport& other) {
     return *this;
 }
 
-/// seed: of path tracing, instead of that of the options. bounced: null, or outlives the
-/// integrator.
+/// part: that the film is. seed: of path tracing, instead of that of the options. bounced: null, or
+/// outlives the integrator.
 static std::unique_ptr<Integrator> make_integrator(const Scene& scene, const Camera& camera,
-                                                   const RenderOptions& options, uint64_t seed,
+                                                   const RenderOptions& options,
+                                                   const PicturePart& part, uint64_t seed,
                                                    const BouncedLight* bounced) {
     const vec3 up(glm::normalize(camera.up));
     if (options.integrator == IntegratorKind::Path)
@@ -73,6 +74,7 @@ static std::unique_ptr<Integrator> make_integrator(const Scene& scene, const Cam
                                             PathTracerOptions{.max_depth = options.max_depth,
                                                               .shadows = options.shadows,
                                                               .seed = seed,
+                                                              .part = part,
                                                               .clamp = options.clamp});
     return std::make_unique<Whitted>(scene, up,
                                      WhittedOptions{.max_depth = options.max_depth,
@@ -109,7 +111,8 @@ public:
                 return bounced.error();
             bounced_ = std::move(*bounced);
         }
-        integrator_ = make_integrator(scene_, camera_, options_, options_.seed, bounced_.get());
+        integrator_ = make_integrator(scene_, camera_, options_, pinhole_.part(), options_.seed,
+                                      bounced_.get());
         return Done{};
     }
 
@@ -149,8 +152,8 @@ public:
         if (pass.for_estimate) {
             sampling.seed ^= kOtherRandomNumbers;
             if (!for_estimate_)
-                for_estimate_ =
-                    make_integrator(scene_, camera_, options_, sampling.seed, bounced_.get());
+                for_estimate_ = make_integrator(scene_, camera_, options_, pinhole_.part(),
+                                                sampling.seed, bounced_.get());
         }
         return trace(pass.for_estimate ? *for_estimate_ : *integrator_,
                      CameraRays(pinhole_, pass.samples, pass.pixels, {}, sampling), observe, film);

@@ -89,7 +89,8 @@ void PathTracer::meet(const Ray& ray, const Path& path, const Hit& hit, Film& fi
     film.add(path.pixel, clamped(path, path.weight * unexposed_ * seen_emission(met)));
     if (path.depth >= options_.max_depth)
         return;
-    const PathSampler random(options_.seed, path.pixel, path.sample);
+    const PathSampler random(options_.seed, options_.part.number_in_picture(path.pixel),
+                             path.sample);
     const uint32_t first = path.depth * uint32_t(kPurposes);
     const dvec2 choices = random.pair(first + kChoices);
     if (met.bsdf.scatters())

@@ -7,6 +7,8 @@
 #pragma once
 
 #include "core/scene.h"
+#include "core/system/log.h"
+#include "host/film/picture_part.h"
 #include "host/shade/integrator.h"
 #include "host/shade/lights/light_sampler.h"
 #include "host/shade/surface/bsdf.h"
@@ -26,6 +28,7 @@ struct PathTracerOptions {
     uint64_t seed = 0;
     LightSearch search = LightSearch::Both;
     /// The most light, in any color, that a pixel's sample gets at once by way of a surface that
+    PicturePart part = {{1, 1}, 0, 0, {1, 1}}; // where the film lies in the picture
     /// scatters; the rest of it is left out. 0: no limit.
     float clamp = 0;
 };
