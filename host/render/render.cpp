@@ -73,6 +73,7 @@ static std::unique_ptr<Integrator> make_integrator(const Scene& scene, const Cam
         return std::make_unique<PathTracer>(scene, up,
                                             PathTracerOptions{.max_depth = options.max_depth,
                                                               .shadows = options.shadows,
+                                                              .cutouts = options.cutouts,
                                                               .seed = seed,
                                                               .part = part,
                                                               .clamp = options.clamp});

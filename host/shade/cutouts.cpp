@@ -55,12 +55,9 @@ float chance_of(const Hit& hit) {
     return float(hash >> 40) * 0x1p-24f;
 }
 
-bool is_there(const Cutout& cutout, std::span<const Texture> textures, const dvec2& uv,
-              const Hit& hit) {
-    const float opacity = opacity_at(cutout, uv, textures);
-    if (opacity <= 0 || opacity >= 1 || !cutout.partial)
-        return opacity > 0;
-    return chance_of(hit) < opacity;
+/// Returns the share of hits that count where a cutout has this opacity.
+float share_that_counts(const Cutout& cutout, float opacity) {
+    return opacity > 0 && !cutout.partial ? 1 : opacity;
 }
 
 } // namespace
@@ -118,16 +115,27 @@ bool Cutouts::keep(std::span<const uint64_t>, std::span<const Hit> hits, std::sp
     return true;
 }
 
+float Cutouts::opacity_at(TriangleId id, double u, double v) const {
+    return any_ ? opacity_of(meshes_[id.mesh], meshes_[id.mesh].all, id, u, v) : 1;
+}
+
+/// cutout: of the mesh; null: no holes.
+float Cutouts::opacity_of(const OfMesh& mesh, const Cutout* cutout, TriangleId id, double u,
+                          double v) const {
+    if (!cutout)
+        return 1;
+    const std::array<vec2, 3> uv = mesh.uv.of(id.prim);
+    const dvec2 at = (1 - u - v) * dvec2(uv[0]) + u * dvec2(uv[1]) + v * dvec2(uv[2]);
+    return share_that_counts(*cutout, ovc::opacity_at(*cutout, at, textures_));
+}
+
 bool Cutouts::counts(const Hit& hit) const {
     assert(hit.id.mesh < meshes_.size());
     const OfMesh& mesh = meshes_[hit.id.mesh];
-    if (!mesh.all && !mesh.shadow)
-        return true;
-    const std::array<vec2, 3> uv = mesh.uv.of(hit.id.prim);
-    const dvec2 at =
-        (1 - hit.u - hit.v) * dvec2(uv[0]) + hit.u * dvec2(uv[1]) + hit.v * dvec2(uv[2]);
-    return (!mesh.all || is_there(*mesh.all, textures_, at, hit)) &&
-           (!mesh.shadow || is_there(*mesh.shadow, textures_, at, hit));
+    return std::ranges::all_of(std::array{mesh.all, mesh.shadow}, [&](const Cutout* cutout) {
+        const float opacity = opacity_of(mesh, cutout, hit.id, hit.u, hit.v);
+        return opacity >= 1 || (opacity > 0 && chance_of(hit) < opacity);
+    });
 }
 
 } // namespace ovc

@@ -21,6 +21,9 @@ public:
     /// Returns whether any mesh has holes. If none has, nobody need ask.
     bool any() const { return any_; }
 
+    /// Returns the share of hits at a place of a triangle that count.
+    float opacity_at(TriangleId id, double u, double v) const;
+
     /// Whether a hit counts depends on its mesh, prim, u, v and t alone, so that it is the same in
     /// any batch.
     bool keep(std::span<const uint64_t> rays, std::span<const Hit> hits,
@@ -35,6 +38,8 @@ private:
     };
 
     bool counts(const Hit& hit) const;
+    float opacity_of(const OfMesh& mesh, const Cutout* cutout, TriangleId id, double u,
+                     double v) const;
 
     const bool any_;
     std::span<const Texture> textures_;

@@ -61,7 +61,7 @@ PathTracer::PathTracer(const Scene& scene, const vec3& up, const PathTracerOptio
     : scene_(scene),
       up_(up),
       options_(options),
-      lights_(scene, up),
+      lights_(scene, up, options.cutouts),
       unexposed_(1 / scene.exposure),
       needs_cones_(needs_cones(scene)),
       light_may_pass_(light_passes(scene, lights_.has_lights())) {

@@ -26,6 +26,7 @@ struct PathTracerOptions {
     uint32_t max_depth = 16; // max surfaces that a path leaves; below 2^16
     bool shadows = true;
     uint64_t seed = 0;
+    bool cutouts = true; // emitters have their holes
     LightSearch search = LightSearch::Both;
     /// The most light, in any color, that a pixel's sample gets at once by way of a surface that
     PicturePart part = {{1, 1}, 0, 0, {1, 1}}; // where the film lies in the picture

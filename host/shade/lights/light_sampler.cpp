@@ -40,8 +40,12 @@ static Box measured(const Soup& soup) {
     return box;
 }
 
-LightSampler::LightSampler(const Scene& scene, const vec3& up)
-    : scene_(scene), up_(up), sky_sampler_(scene, up) {
+LightSampler::LightSampler(const Scene& scene, const vec3& up, bool with_cutouts)
+    : scene_(scene),
+      up_(up),
+      cutouts_(scene, Cutouts::Asked::ByPaths),
+      with_cutouts_(with_cutouts),
+      sky_sampler_(scene, up) {
     const Box box = measured(scene.soup);
     const dvec3 middle = box.empty() ? dvec3(0) : box.center();
     const double reach = box.empty() ? 1 : std::max(0.5 * glm::length(box.extent()), 1e-30);
@@ -167,12 +171,16 @@ std::optional<Arriving> LightSampler::from_emitter(const Emitters& emitters, siz
         return std::nullopt;
     const dvec3 towards = there / distance;
     const double cosine = -glm::dot(towards, across) / area; // to the front
-    if (!(cosine > 0 || (emitters.two_sided && cosine < 0)))
+    // The shadow ray ends before the emitter, so that nobody asks about its holes there.
+    const TriangleId id{emitters.mesh, uint32_t(i - emitters.first)};
+    const float there_is =
+        with_cutouts_ ? cutouts_.opacity_at(id, root * (1 - u.y), root * u.y) : 1;
+    if (!(cosine > 0 || (emitters.two_sided && cosine < 0)) || there_is == 0)
         return std::nullopt;
     const double density = chance(i) / area * distance * distance / std::abs(cosine);
     return Arriving{{surface.position, 0, there, kBeforeEmitter},
                     towards,
-                    emitters.radiance / float(density),
+                    there_is * emitters.radiance / float(density),
                     density,
                     kNone};
 }

@@ -5,6 +5,7 @@
 
 #include "core/ray.h"
 #include "core/scene.h"
+#include "host/shade/cutouts.h"
 #include "host/shade/lights/sky_sampler.h"
 #include "host/shade/shade.h"
 
@@ -27,7 +28,8 @@ struct Arriving {
 class LightSampler {
 public:
     /// The scene must outlive it, and its lights must be placed. up: of the background.
-    LightSampler(const Scene& scene, const vec3& up);
+    /// with_cutouts: emitters have the holes that rays see.
+    LightSampler(const Scene& scene, const vec3& up, bool with_cutouts = true);
 
     /// Returns whether there are other lights than emitters.
     bool has_lights() const { return has_lights_; }
@@ -66,6 +68,8 @@ private:
 
     const Scene& scene_;
     const vec3 up_;
+    const Cutouts cutouts_;
+    const bool with_cutouts_;
     const SkySampler sky_sampler_;
     bool has_lights_ = false;
     std::vector<double> sums_{0};    // running sums of the chances of lights, triangles and the sky
