@@ -2,6 +2,9 @@
 // Fresnel's equations for a boundary of two clear media, the mean of both polarisations, in double.
 #pragma once
 
+#include "core/vec.h"
+
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 
@@ -34,6 +37,13 @@ inline double fresnel_mean(double ior) {
                std::log((n - 1) / (n + 1)) -
            2 * n2 * n * (n2 + 2 * n - 1) / ((n2 + 1) * (n4 - 1)) +
            8 * n4 * (n4 + 1) / ((n2 + 1) * (n4 - 1) * (n4 - 1)) * std::log(n);
+}
+
+/// Returns the factor of a ground's color if a boundary above it throws part of the scattered light
+/// back down. ior: of the boundary, above the ground or below; at most 1 counts as none.
+inline vec3 share_from_below(const vec3& color, double ior) {
+    const float back = float(fresnel_mean(1 / std::max(ior, 1.0)));
+    return (1 - back) / (vec3(1) - back * color);
 }
 
 } // namespace ovc

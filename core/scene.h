@@ -29,6 +29,7 @@ namespace ovc {
 /// `ambient` and `diffuse` already.
 struct Finish {
     vec3 ambient{0};        // x color is sent out in the dark; the scene's ambient light is in it
+    vec3 emission{0};       // the part of `ambient` that does not stand for light of other surfaces
     float diffuse = 1;      // x color x the light that arrives x cosine ^ brilliance
     float diffuse_back = 0; // the same of light that arrives at the side that is not seen
     float brilliance = 1;
@@ -81,6 +82,9 @@ struct Optics {
     enum class Boundary : uint8_t { None, Mirror, Metal, Dielectric, Thin };
 
     vec3 diffuse{0}; // scattered evenly, of the light below the boundary
+    /// A Dielectric throws part of the scattered light back down, which is then scattered again:
+    /// less comes out of a dark `diffuse`. Else that is what comes out in all.
+    bool internal_reflection = false;
     Boundary boundary = Boundary::None;
     vec3 reflection{1};
     /// The share of the light not reflected by the boundary that goes on through the surface, bent

@@ -16,6 +16,7 @@
 #include "host/render/stage.h"
 #include "host/scene/scene_cache.h"
 #include "host/scene/scene_summary.h"
+#include "host/shade/path_tracer.h"
 #include "host/shade/whitted.h"
 #include "host/terminal/interrupt.h"
 #include "host/terminal/message.h"
@@ -123,6 +124,14 @@ static void tell_of_nothing_to_go_on_with(const RenderJob& job, const LogSink& l
                           unfinished_film(output))
             : fmt::format("--continue: there is no frame {} to go on with; all are rendered",
                           output));
+}
+
+static void tell_of_integrator(const RenderJob& job, const Scene& scene, const LogSink& log) {
+    if (job.render.integrator == IntegratorKind::Path)
+        tell_what_paths_leave_out(scene, job.scene.name(), log);
+    else
+        tell_simplifications(scene, job.lights.empty() ? scene.lights : job.lights,
+                             job.scene.name(), log);
 }
 
 static void tell_of_up_left_out(const RenderJob& job, const Scene& scene, const LogSink& log) {
@@ -274,9 +283,7 @@ static Result<int> render_others(const RenderJob& job, const RankBytes& there, W
     ScenePictures pictures({job.texture_memory, job.scene.strict}, log);
     if (const Result<Done> opened = pictures.open(*scene); !opened)
         return opened.error();
-    if (job.render.integrator == IntegratorKind::Whitted)
-        tell_simplifications(*scene, job.lights.empty() ? scene->lights : job.lights,
-                             job.scene.name(), log);
+    tell_of_integrator(job, *scene, log);
     stats.scene = job.scene.name();
     const ImageSize size = job.size.value_or(scene->size.value_or(ImageSize{}));
     const Result<PicturePart> part = part_of(size, job.crop);

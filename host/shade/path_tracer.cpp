@@ -4,6 +4,9 @@
 
 #include "host/shade/path_sampler.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -68,6 +71,33 @@ PathTracer::PathTracer(const Scene& scene, const vec3& up, const PathTracerOptio
     assert(options.max_depth <= UINT16_MAX); // Path::depth counts to it
 }
 
+void tell_what_paths_leave_out(const Scene& scene, std::string_view source, const LogSink& log) {
+    std::vector<std::string> items;
+    const auto add = [&](std::string_view what, size_t count) {
+        if (count > 0)
+            items.push_back(fmt::format("{} ({})", what, count));
+    };
+    const auto add_finishes = [&](std::string_view word, const auto& has) {
+        add(word, size_t(std::ranges::count_if(scene.materials, [&](const Material& m) {
+                return m.finish && !m.optics && has(*m.finish);
+            })));
+    };
+    const Background& air = scene.background;
+    add("fog", air.fogs.size());
+    add("rainbow", air.rainbows.size());
+    add("media",
+        air.media.size() + size_t(std::ranges::count_if(scene.materials, [](const Material& m) {
+            return !m.media.empty();
+        })));
+    add_finishes("irid", [](const Finish& f) { return f.irid > 0; });
+    add_finishes("brilliance", [](const Finish& f) { return f.brilliance != 1 && f.diffuse > 0; });
+    add_finishes("crand", [](const Finish& f) { return f.crand > 0; });
+    add_finishes("diffuse from behind", [](const Finish& f) { return f.diffuse_back > 0; });
+    if (!items.empty())
+        say(log, LogLevel::Warning,
+            fmt::format("{}: --integrator path leaves out {}", source, fmt::join(items, ", ")));
+}
+
 void PathTracer::shade(std::span<const Ray> rays, std::span<const Path> paths,
                        std::span<const Hit> hits, Film& film, Spawned& spawned) const {
     Sides sides;
@@ -81,10 +111,11 @@ void PathTracer::shade(std::span<const Ray> rays, std::span<const Path> paths,
         spawned.paths.append(*side);
 }
 
-void PathTracer::meet(const Ray& ray, const Path& path, const Hit& hit, Film& film, Sides& sides,
+void PathTracer::meet(const Ray& ray, Path path, const Hit& hit, Film& film, Sides& sides,
                       Spawned& spawned) const {
     const SurfacePoint surface = surface_point(scene_, ray, hit, needs_cones_ ? path.cone : Cone());
     const double distance = double(path.behind) + hit.t * glm::length(ray.dir);
+    path.weight *= share_kept(ray, surface);
     const Met met{ray, path, hit, distance, surface, Bsdf(surface)};
     film.add(path.pixel, clamped(path, path.weight * unexposed_ * seen_emission(met)));
     if (path.depth >= options_.max_depth)
@@ -207,7 +238,8 @@ bool PathTracer::pass(const Hit& hit, Ray& ray, Shadow& shadow) const {
     const SurfacePoint surface = surface_point(scene_, ray, hit);
     const bool is_light = shadow.light != kNone;
     const bool ends = !passes(*surface.material, is_light) || shadow.passed >= options_.max_depth;
-    shadow.arriving *= ends ? vec3(0) : Bsdf(surface).through();
+    shadow.arriving *=
+        ends ? vec3(0) : Bsdf(surface).through() * share_kept_in_shadow(ray, surface);
     ++shadow.passed;
     const dvec3 there = ray.dir;
     ray = is_light                   ? shadow_ray(scene_.lights[shadow.light], surface.beyond)

@@ -14,6 +14,7 @@
 #include "host/shade/surface/bsdf.h"
 
 #include <cstdint>
+#include <string_view>
 
 namespace ovc {
 
@@ -25,11 +26,11 @@ enum class LightSearch { Both, ShadowRays, Paths };
 struct PathTracerOptions {
     uint32_t max_depth = 16; // max surfaces that a path leaves; below 2^16
     bool shadows = true;
-    uint64_t seed = 0;
     bool cutouts = true; // emitters have their holes
+    uint64_t seed = 0;
+    PicturePart part = {{1, 1}, 0, 0, {1, 1}}; // where the film lies in the picture
     LightSearch search = LightSearch::Both;
     /// The most light, in any color, that a pixel's sample gets at once by way of a surface that
-    PicturePart part = {{1, 1}, 0, 0, {1, 1}}; // where the film lies in the picture
     /// scatters; the rest of it is left out. 0: no limit.
     float clamp = 0;
 };
@@ -49,7 +50,7 @@ public:
 private:
     struct Met;
     struct Sides;
-    void meet(const Ray& ray, const Path& path, const Hit& hit, Film& film, Sides& sides,
+    void meet(const Ray& ray, Path path, const Hit& hit, Film& film, Sides& sides,
               Spawned& spawned) const;
     vec3 seen_sky(const Ray& ray, const Path& path) const;
     vec3 seen_emission(const Met& met) const;
@@ -66,5 +67,9 @@ private:
     const bool needs_cones_;
     const bool light_may_pass_;
 };
+
+/// Warns of what the scene has and path tracing does not follow: fog, media, and words of POV-Ray's
+/// finishes. source: the name of what the scene was read from.
+void tell_what_paths_leave_out(const Scene& scene, std::string_view source, const LogSink& log);
 
 } // namespace ovc

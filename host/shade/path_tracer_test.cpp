@@ -166,6 +166,52 @@ TEST(PathTracer, ALampLightsAFloorByItsFormFactor) {
     expect_mean(estimate(scene, camera, 64), expected, "its back shines too");
 }
 
+TEST(PathTracer, ALampWithHolesShinesWhereThereIsSome) {
+    Scene scene = dark();
+    add_level(scene, matte(vec3(0.5f)), 0, 3, true);
+    add_level(scene, lamp(vec3(4)), 1.5, 0.8, /* up= */ false);
+    scene.cutouts = {{.width = 1, .height = 1, .opacity = {255}, .scale = 0.75f, .partial = true}};
+    scene.meshes[1].cutout = 0;
+    scene.meshes[1].uv.assign(6, vec2(0.5f));
+    expect_mean(estimate(scene, at_point({2, 1, 0}, dvec3(0)), 64),
+                0.75 * 0.5 * 4 * form_factor(0.8, 1.5), "three quarters of its light");
+    PathTracerOptions options;
+    options.search = LightSearch::ShadowRays;
+    expect_mean(estimate(scene, at_point({2, 1, 0}, dvec3(0)), 64, options),
+                0.75 * 0.5 * 4 * form_factor(0.8, 1.5), "and of shadow rays");
+}
+
+/// Behind 2 of glass that keeps a share of exp(-(1 - color) x way / distance).
+TEST(PathTracer, GlassKeepsLightAsItsAbsorptionSays) {
+    Scene scene = dark();
+    scene.background = {vec3(1), vec3(1)};
+    Material tinted;
+    tinted.color = vec3(0);
+    tinted.transmission = 1;
+    tinted.finish = Finish{.diffuse = 0};
+    tinted.absorption = Absorption{.distance = 4, .power = 1000, .color = vec3(0, 0.5f, 1)};
+    add_box(scene, tinted, dvec3(-1), dvec3(1), /* outside= */ true);
+    EXPECT_NEAR(estimate(scene, at_point({0, 0, 5}, dvec3(0)), 1).mean, std::exp(-0.25), 1e-3);
+}
+
+TEST(PathTracer, TellsWhatItLeavesOut) {
+    Scene scene = dark();
+    std::string said;
+    const LogSink log = [&](LogLevel, const std::string& sentence) { said += sentence; };
+    scene.materials.emplace_back().finish = Finish{.diffuse = 1, .brilliance = 2, .irid = 0.1f};
+    scene.materials.push_back(scene.materials.back());
+    scene.materials.back().finish->irid = 0;
+    scene.materials.back().media.emplace_back();
+    scene.materials.push_back(scene.materials.back());
+    scene.materials.back().optics.emplace();
+    tell_what_paths_leave_out(scene, "a.pov", log);
+    EXPECT_EQ(said, "a.pov: --integrator path leaves out media (2), irid (1), brilliance (2)");
+    scene = dark();
+    said = "";
+    tell_what_paths_leave_out(scene, "a.pov", log);
+    EXPECT_EQ(said, "");
+}
+
 TEST(PathTracer, DepthCountsTheSurfacesThatAPathLeaves) {
     Scene scene = dark();
     add_level(scene, matte(vec3(0.5f)), 0, 3, true);

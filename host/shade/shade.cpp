@@ -331,6 +331,11 @@ vec3 share_kept(const Ray& ray, const SurfacePoint& surface) {
     return glm::mix(absorption->color, vec3(1), float(share));
 }
 
+vec3 share_kept_in_shadow(const Ray& ray, const SurfacePoint& surface) {
+    const std::optional<Absorption>& absorption = surface.material->absorption;
+    return absorption && absorption->power == 0 ? vec3(1) : share_kept(ray, surface);
+}
+
 Ray mirror_ray(const Ray& ray, const SurfacePoint& surface) {
     const auto mirrored = [&](const dvec3& normal) {
         return ray.dir - 2 * glm::dot(ray.dir, normal) * normal;

@@ -105,6 +105,9 @@ Branches branches(const SurfacePoint& surface, bool total);
 /// Returns the share, for each color, that is left of light after the ray's way to the surface from
 /// inside of its solid.
 vec3 share_kept(const Ray& ray, const SurfacePoint& surface);
+/// Returns the same for a shadow ray, which nothing is taken from where the absorption's power is
+/// 0.
+vec3 share_kept_in_shadow(const Ray& ray, const SurfacePoint& surface);
 
 /// Returns the mirrored ray, which never goes below the triangle's plane.
 Ray mirror_ray(const Ray& ray, const SurfacePoint& surface);

@@ -48,12 +48,6 @@ static vec3 light_through(const SurfacePoint& surface) {
     return surface.through * float(1 + std::pow(cosine, 45 * double(caustics)));
 }
 
-/// Returns the share of a shadow ray's light that is left after its way to the surface.
-static vec3 light_kept(const Ray& ray, const SurfacePoint& surface) {
-    const std::optional<Absorption>& absorption = surface.material->absorption;
-    return absorption && absorption->power == 0 ? vec3(1) : share_kept(ray, surface);
-}
-
 /// Returns whether the ray reaches the surface from inside of a solid that lets light through.
 /// Light inside of others comes from the camera's being there, as in a room.
 static bool is_inside(const Scene& scene, const Ray& ray, const Hit& hit) {
@@ -135,6 +129,12 @@ void tell_simplifications(const Scene& scene, std::span<const Light> lights,
                           std::string_view source, const LogSink& log) {
     // The only stand-in that is parallel is the sky's.
     const auto is_on_emitter = [](const Light& light) { return light.stand_in && !light.parallel; };
+    const auto is_of_sky = [](const Light& light) { return light.stand_in && light.parallel; };
+    if (!scene.background.layers.empty() && std::any_of(lights.begin(), lights.end(), is_of_sky))
+        say(log, LogLevel::Warning,
+            fmt::format("{}: environment maps light surfaces as a sky of even colors; --integrator "
+                        "path has them as they are",
+                        source));
     if (std::any_of(lights.begin(), lights.end(), is_on_emitter))
         say(log, LogLevel::Warning,
             fmt::format("{}: area lights shine from a few points on them, and shadows are hard; "
@@ -406,7 +406,7 @@ void Whitted::light_up(const Light& light, uint32_t number, const Met& met, Film
 
 bool Whitted::pass(const Hit& hit, Ray& ray, Shadow& shadow) const {
     const SurfacePoint glass = surface_point(scene_, ray, hit);
-    shadow.arriving *= light_through(glass) * light_kept(ray, glass);
+    shadow.arriving *= light_through(glass) * share_kept_in_shadow(ray, glass);
     if (has_media_)
         shadow.arriving *= share_of_media(scene_, ray, hit);
     if (max_component(shadow.arriving) < kMinShadow)

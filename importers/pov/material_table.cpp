@@ -181,7 +181,8 @@ ovc::Material MaterialTable::made(const Texture& texture, const Color& color, co
     const Pigment& pigment = texture.pigment;
     const bool varies = pigment.pattern && !texture.mix.pattern;
     Finish finish = with_peaks(texture.surface);
-    finish.ambient = texture.surface.ambient * look_.ambient_light + texture.surface.emission;
+    finish.emission = texture.surface.emission;
+    finish.ambient = texture.surface.ambient * look_.ambient_light + finish.emission;
     finish.irid_wavelengths = look_.irid_wavelengths;
     if (interior.double_illuminate)
         finish.diffuse_back = finish.diffuse;
@@ -193,6 +194,7 @@ ovc::Material MaterialTable::made(const Texture& texture, const Color& color, co
         finish.diffuse *= share;
         finish.diffuse_back *= share;
         finish.ambient *= share;
+        finish.emission *= share;
     }
     material.color = color.rgb;
     material.mirror =

@@ -48,8 +48,8 @@ void each_field(auto& io, Some<Region> auto& r) {
 }
 
 void each_field(auto& io, Some<Finish> auto& f) {
-    io(f.ambient, f.diffuse, f.brilliance, f.phong, f.phong_size, f.specular, f.roughness,
-       f.metallic, f.reflection, f.grazing_reflection, f.reflection_falloff, f.fresnel,
+    io(f.ambient, f.emission, f.diffuse, f.brilliance, f.phong, f.phong_size, f.specular,
+       f.roughness, f.metallic, f.reflection, f.grazing_reflection, f.reflection_falloff, f.fresnel,
        f.metallic_reflection, f.conserve_energy, f.irid, f.irid_thickness, f.irid_turbulence,
        f.irid_wavelengths, f.crand, f.filter_by_brightest, f.diffuse_back);
 }
@@ -98,7 +98,8 @@ void each_field(auto& io, Some<PictureFile> auto& p) {
 }
 
 void each_field(auto& io, Some<Optics> auto& o) {
-    io(o.diffuse, o.boundary, o.reflection, o.through, o.ior, o.width, o.emission, o.two_sided);
+    io(o.diffuse, o.internal_reflection, o.boundary, o.reflection, o.through, o.ior, o.width,
+       o.emission, o.two_sided);
 }
 
 void each_field(auto& io, Some<Radiosity> auto& r) {

@@ -68,7 +68,7 @@ Bsdf::Bsdf(const SurfacePoint& surface) : geometric_(surface.geometric_normal) {
     else if (material.optics)
         take_optics(surface, *material.optics);
     else if (material.finish)
-        take_finish(surface, *material.finish);
+        take_finish(surface);
     else
         take_shares(surface);
     choose_probabilities();
@@ -104,7 +104,11 @@ void Bsdf::take_optics(const SurfacePoint& surface, const Optics& optics) {
     if (surface.entering || optics.two_sided)
         emission_ = optics.emission;
     diffuse_ = optics.diffuse;
-    if (optics.boundary != Optics::Boundary::None && diffuse_ != vec3(0)) {
+    if (optics.internal_reflection)
+        diffuse_ *= share_from_below(optics.diffuse, optics.ior);
+    // Ground and glass that share out the light lie beside each other, as in a mix of them.
+    const bool is_beside = clear && max_component(optics.reflection + diffuse_) <= 1.00001f;
+    if (optics.boundary != Optics::Boundary::None && diffuse_ != vec3(0) && !is_beside) {
         coat_ = boundary;
         coat_scale_ = 1.0f / glm::max(vec3(1) - boundary.mean(), vec3(1e-6f));
     }
@@ -144,29 +148,47 @@ void Bsdf::take_shares(const SurfacePoint& surface) {
     diffuse_ = surface.color * std::max(1 - parts.taken_by_mirror - parts.taken_by_through, 0.0f);
 }
 
-/// Takes POV-Ray's terms. Where they add up to more light than arrives, it dims all alike.
-void Bsdf::take_finish(const SurfacePoint& surface, const Finish& finish) {
+/// Takes POV-Ray's terms, of all coats together. Where they add up to more light than arrives, it
+/// dims all alike.
+void Bsdf::take_finish(const SurfacePoint& surface) {
     take_shares(surface);
+    diffuse_ = vec3(0);
+    double widths = 0; // times the strengths of their highlights
+    if (surface.coats.empty())
+        widths = add_finish(surface, vec3(1));
+    for (const Coat& coat : surface.coats)
+        widths += add_finish(coat.surface, coat.weight);
+    if (is_glossy_)
+        width_ = std::clamp(widths / double(average(gloss_.head_on)), kSmooth, 1.0);
+    const float sum = max_component(diffuse_ + gloss_.head_on + mirror_ + through_);
+    if (sum > 1)
+        for (vec3* part : {&diffuse_, &gloss_.head_on, &mirror_, &through_})
+            *part /= sum;
+}
+
+/// Adds a finish that is seen with this weight. Returns the width of its highlight times the
+/// highlight's strength.
+double Bsdf::add_finish(const SurfacePoint& surface, const vec3& weight) {
+    if (!surface.material->finish)
+        return 0;
+    const Finish& finish = *surface.material->finish;
     // On a diffuse surface ambient light stands for light from other surfaces, which path tracing
     // finds itself. POV-Ray 3.7 drops it in the same way where there is radiosity.
-    const vec3 color = surface.opacity * surface.color;
-    emission_ = finish.diffuse > 0 ? vec3(0) : color * finish.ambient;
-    diffuse_ = color * finish.diffuse;
+    const vec3 color = weight * surface.opacity * surface.color;
+    emission_ += color * (finish.diffuse > 0 ? finish.emission : finish.ambient);
+    diffuse_ += color * finish.diffuse;
     // A highlight of Blinn's exponent n is as wide as alpha^2 = 2 / (n + 2), and (n + 2) / 8 high
     // over pi where all light is reflected; Phong's of m is as wide as Blinn's of 4 m.
     const bool blinn = finish.specular > 0 && finish.roughness > 0;
     const double exponent = blinn ? 1 / double(finish.roughness) : 4 * double(finish.phong_size);
     const float height = surface.maps.gloss() * (blinn ? finish.specular : finish.phong);
-    const float share = std::min(float(8 * height / (exponent + 2)), 1.0f);
-    if (share > 0) {
-        is_glossy_ = true;
-        width_ = std::clamp(std::sqrt(2 / (exponent + 2)), kSmooth, 1.0);
-        gloss_.head_on = share * glm::mix(vec3(1), surface.color, finish.metallic);
-    }
-    const float sum = max_component(diffuse_ + gloss_.head_on + mirror_ + through_);
-    if (sum > 1)
-        for (vec3* part : {&diffuse_, &gloss_.head_on, &mirror_, &through_})
-            *part /= sum;
+    const vec3 share = weight * std::min(float(8 * height / (exponent + 2)), 1.0f) *
+                       glm::mix(vec3(1), surface.color, finish.metallic);
+    if (!(average(share) > 0))
+        return 0;
+    is_glossy_ = true;
+    gloss_.head_on += share;
+    return double(average(share)) * std::sqrt(2 / (exponent + 2));
 }
 
 /// Makes each way as probable as the light that it is about to send on.

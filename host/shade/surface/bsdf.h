@@ -66,7 +66,8 @@ public:
 
 private:
     void take_optics(const SurfacePoint& surface, const Optics& optics);
-    void take_finish(const SurfacePoint& surface, const Finish& finish);
+    void take_finish(const SurfacePoint& surface);
+    double add_finish(const SurfacePoint& surface, const vec3& weight);
     void take_shares(const SurfacePoint& surface);
     void choose_probabilities();
     bool is_above(const dvec3& towards) const;

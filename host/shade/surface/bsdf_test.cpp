@@ -157,6 +157,24 @@ TEST(Bsdf, SendsOnNoMoreThanArrives) {
         }
 }
 
+/// The coat throws 0.596 of the light from below back: 1 - (1 - 0.0918) / 1.5^2. Of that, a ground
+/// that reflects a half loses a half each time.
+TEST(Bsdf, LightGoesToAndFroBelowACoat) {
+    Material m = with_optics(Boundary::Dielectric, vec3(0.5f), vec3(1), 0);
+    m.optics->internal_reflection = true;
+    const dvec3 view = way(0.7, 1);
+    const Bsdf bsdf(seen_from(m, view));
+    const double sum = integral([&](const dvec3& d) { return bsdf.evaluate(d); }).x;
+    const double ground = 0.5 * 0.4036 / (1 - 0.5 * 0.5964);
+    EXPECT_NEAR(sum, ground * (1 - fresnel(0.7, 1.5)), 1e-3);
+    m.texture = PlacedTexture{}; // its color is the ground's as well
+    SurfacePoint at = seen_from(m, view);
+    at.color = vec3(0.5f);
+    m.optics->diffuse = vec3(0);
+    const Bsdf textured(at);
+    EXPECT_EQ(textured.evaluate(view), bsdf.evaluate(view));
+}
+
 TEST(Bsdf, IsTheSameBothWays) {
     for (const BsdfCase& test : scattering()) {
         if (test.material.finish)
@@ -273,12 +291,44 @@ TEST(Bsdf, GlassSharesOutAsFresnelSays) {
     EXPECT_NEAR(leaving.through().x, 0.96f, 1e-6f);
 }
 
+/// Of half glass and half white paint all light goes on, from inside as well.
+TEST(Bsdf, GlassBesidePaintLosesNothing) {
+    const Material m = with_optics(Boundary::Dielectric, vec3(0.5f), vec3(0.5f), 0, vec3(0.5f));
+    for (const bool entering : {true, false})
+        for (const double cosine : kCosines) {
+            const Bsdf bsdf(seen_from(m, way(cosine, 1), entering));
+            const double mirrored = 0.5 * fresnel(cosine, entering ? 1.5 : 1 / 1.5);
+            const double scattered = integral([&](const dvec3& d) { return bsdf.evaluate(d); }).x;
+            EXPECT_NEAR(mirrored + double(bsdf.through().x) + scattered, 1, 1e-3) << cosine;
+        }
+}
+
 TEST(Bsdf, APaneReflectsWithBothItsSides) {
     const Material pane = with_optics(Boundary::Thin, vec3(0), vec3(1), 0, vec3(1), 1.5);
     const Bsdf bsdf(seen_from(pane, way(1, 0)));
     // R + T R T + T R R R T + ...: 2 R / (1 + R).
     EXPECT_NEAR(bsdf.through().x, 1 - 0.08 / 1.04, 1e-6);
     EXPECT_TRUE(bsdf.is_straight());
+}
+
+/// A third glows in red; two thirds are green paint with a highlight.
+TEST(Bsdf, CoatsHaveFinishesOfTheirOwn) {
+    Finish glow, paint;
+    glow.ambient = vec3(1);
+    glow.diffuse = 0;
+    paint.diffuse = 0.6f;
+    paint.phong = 0.3f;
+    const Material red = with_finish(glow, {1, 0, 0}), green = with_finish(paint, {0, 1, 0});
+    SurfacePoint mixed = seen_from(red, way(1, 0));
+    mixed.coats = {{seen_from(red, way(1, 0)), vec3(1 / 3.0f)},
+                   {seen_from(green, way(1, 0)), vec3(2 / 3.0f)}};
+    const Bsdf bsdf(mixed), alone(seen_from(green, way(1, 0)));
+    EXPECT_EQ(bsdf.emission(), vec3(1 / 3.0f, 0, 0));
+    for (const double cosine : kCosines) {
+        const vec3 found = bsdf.evaluate(way(cosine, 2)), whole = alone.evaluate(way(cosine, 2));
+        for (int c = 0; c < 3; ++c)
+            EXPECT_NEAR(found[c], 2 / 3.0f * whole[c], 1e-5f * (1 + whole[c])) << cosine;
+    }
 }
 
 TEST(Bsdf, EmitsFromItsFrontUnlessItHasTwo) {
@@ -294,6 +344,9 @@ TEST(Bsdf, EmitsFromItsFrontUnlessItHasTwo) {
     finish.ambient = vec3(0.5f);
     const Material matte = with_finish(finish, {1, 0.5f, 0});
     EXPECT_EQ(Bsdf(seen_from(matte, way(1, 0))).emission(), vec3(0)) << "stands for other light";
+    finish.emission = vec3(0.25f);
+    const Material both = with_finish(finish, {1, 0.5f, 0});
+    EXPECT_EQ(Bsdf(seen_from(both, way(1, 0))).emission(), vec3(0.25f, 0.125f, 0));
     finish.diffuse = 0;
     const Material glowing = with_finish(finish, {1, 0.5f, 0});
     EXPECT_EQ(Bsdf(seen_from(glowing, way(1, 0))).emission(), vec3(0.5f, 0.25f, 0));
