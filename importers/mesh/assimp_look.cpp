@@ -111,6 +111,7 @@ private:
     std::optional<uint32_t> picture_of(const std::string& name);
     uint32_t add_image(const Image& image);
     void add_optics(const aiMaterial& source, Material& material);
+    void add_emission(const aiMaterial& source, const vec3& emission, Material& material);
     void add_holes(const aiMaterial& source, const Image& color, AssimpMaterial& to);
 
     const aiScene& found_;
@@ -165,6 +166,11 @@ uint32_t Looks::add_image(const Image& image) {
     return add_texture(scene_, std::move(texture));
 }
 
+vec3 emission_of(const aiMaterial& source) {
+    return number_of(source, AI_MATKEY_EMISSIVE_INTENSITY, 1) *
+           color_of(source, AI_MATKEY_COLOR_EMISSIVE, vec3(0));
+}
+
 /// Sets glTF's metallic-roughness model for path tracing: roughness is the root of the width.
 void Looks::add_optics(const aiMaterial& source, Material& material) {
     const float metallic = number_of(source, AI_MATKEY_METALLIC_FACTOR, 0);
@@ -190,15 +196,36 @@ void Looks::add_optics(const aiMaterial& source, Material& material) {
     } else {
         maps.metallic = add_texture(scene_, plain_texture(vec3(metallic)));
     }
-    const float strength = number_of(source, AI_MATKEY_EMISSIVE_INTENSITY, 1);
-    optics.emission = strength * color_of(source, AI_MATKEY_COLOR_EMISSIVE, vec3(0));
+    add_emission(source, emission_of(source), material);
+}
+
+/// Lets a surface that has optics send out light.
+void Looks::add_emission(const aiMaterial& source, const vec3& emission, Material& material) {
+    std::optional<Image> image = image_of(source, kEmissionMaps, 0);
+    if (emission == vec3(0))
+        return;
+    Optics& optics = *material.optics;
+    optics.emission = emission;
     int two_sided = 0;
     source.Get(AI_MATKEY_TWOSIDED, two_sided);
     optics.two_sided = two_sided != 0;
-    if (auto image = image_of(source, kEmissionMaps, 0); image && optics.emission != vec3(0)) {
+    if (image) {
         image->image.otherwise = {vec3(1)};
-        maps.emission = add_image(*image);
+        if (!material.maps)
+            material.maps.emplace();
+        material.maps->emission = add_image(*image);
     }
+}
+
+/// Returns a surface that lets light through as optics.
+Optics clear_optics(const Material& material) {
+    const float share = material.transmission;
+    Optics optics;
+    optics.diffuse = (1 - share) * material.color;
+    optics.boundary = material.ior == 1 ? Optics::Boundary::None : Optics::Boundary::Dielectric;
+    optics.ior = material.ior;
+    optics.through = share * material.filter;
+    return optics;
 }
 
 /// Returns glTF's alpha mode; nothing for other formats.
@@ -276,8 +303,13 @@ AssimpMaterial Looks::add(const aiMaterial& source) {
         result.cutout == kNone && alpha_mode_of(source) == "MASK" && opacity_of(source) == 0;
     let_light_through(source, result.cutout != kNone, material);
     ai_real metallic = 0; // glTF's model is that of materials that have it
-    if (material.transmission == 0 && source.Get(AI_MATKEY_METALLIC_FACTOR, metallic) == AI_SUCCESS)
+    const bool is_gltf = source.Get(AI_MATKEY_METALLIC_FACTOR, metallic) == AI_SUCCESS;
+    if (is_gltf && material.transmission == 0)
         add_optics(source, material);
+    else if (is_gltf && !material.texture && emission_of(source) != vec3(0)) {
+        material.optics = clear_optics(material);
+        add_emission(source, emission_of(source), material);
+    }
     scene_.materials.push_back(std::move(material));
     return result;
 }

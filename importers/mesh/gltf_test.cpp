@@ -174,6 +174,18 @@ TEST(Gltf, AlphaWithoutATextureFollowsItsMode) {
     EXPECT_EQ(kept.materials[0].transmission, 0);
 }
 
+TEST(Gltf, WhatLetsLightThroughMaySendSomeOut) {
+    const ReadGltf veil =
+        read_gltf(gltf_of("{\"alphaMode\":\"BLEND\",\"emissiveFactor\":[1,0.5,0],"
+                          "\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.5,1,1,0.25]}}"));
+    ASSERT_TRUE(veil.material().optics);
+    const Optics& optics = *veil.material().optics;
+    EXPECT_EQ(optics.emission, vec3(1, 0.5f, 0));
+    EXPECT_EQ(optics.through, vec3(0.75f));
+    EXPECT_EQ(optics.diffuse, 0.25f * vec3(0.5f, 1, 1));
+    EXPECT_EQ(optics.boundary, Optics::Boundary::None);
+}
+
 TEST(Gltf, PunctualLightsStandWhereTheirNodesDo) {
     const ReadGltf read = read_gltf(gltf_of(
         "{}",
