@@ -87,6 +87,7 @@ private:
     bool material();
     bool make_named_material();
     bool named_material();
+    void tell_material(const Parameters& parameters, std::string_view type);
     bool texture();
     bool light_source();
     bool area_light_source();

@@ -82,7 +82,8 @@ bool Interpreter::add_shape(Mesh mesh, const Sight& sight) {
     Shape shape{std::move(mesh), now_at(now.transforms), now.material, now.reversed, sight};
     if (now.emission && building_.empty()) {
         const vec3 radiance = radiance_of(*now.emission, shape);
-        shape.material = materials_.emitter(now.material, radiance, now.emission->two_sided);
+        shape.material =
+            materials_.emitter(now.material, radiance, now.emission->two_sided, place_);
         lights_.add_area(shape, radiance, now.emission->two_sided);
     } else if (now.emission) {
         diagnostics_.approximate("emitting objects", place_, "emission of instances left out");
@@ -111,7 +112,7 @@ bool Interpreter::material() {
     if (!read_typed(type, parameters))
         return false;
     state_.now.material = materials_.make(type, parameters, place_);
-    tell_left_over(parameters, "materials", type, diagnostics_);
+    tell_material(parameters, type);
     return true;
 }
 
@@ -121,8 +122,14 @@ bool Interpreter::make_named_material() {
     if (!read_typed(name, parameters))
         return false;
     materials_.define(name, parameters, place_);
-    tell_left_over(parameters, "materials", parameters.text("type"), diagnostics_);
+    tell_material(parameters, parameters.text("type"));
     return true;
+}
+
+/// Says what a material has that is not shown.
+void Interpreter::tell_material(const Parameters& parameters, std::string_view type) {
+    textures_.tell_means(parameters);
+    tell_left_over(parameters, "materials", type, diagnostics_);
 }
 
 bool Interpreter::named_material() {

@@ -67,7 +67,8 @@ bool Parameters::read(Tokens& tokens, Diagnostics& diagnostics) {
         if (!read_values(tokens, diagnostics, parameter))
             return false;
         if (known && (known->kind == Kind::Rgb || known->kind == Kind::Xyz) &&
-            parameter.numbers.size() % 3 != 0 && parameter.numbers.size() != 1)
+            (parameter.numbers.size() % 3 != 0 || parameter.numbers.empty()) &&
+            parameter.numbers.size() != 1)
             return diagnostics.fail(parameter.place,
                                     fmt::format("found {} of {}, expected 3",
                                                 counted(parameter.numbers.size(), "value"),
@@ -98,6 +99,10 @@ bool Parameters::read_values(Tokens& tokens, Diagnostics& diagnostics, Parameter
                                                     token.number, ovc::quoted(parameter.name)));
             parameter.numbers.push_back(token.number);
         } else if (token.kind == TokenKind::Text || is_truth) {
+            if (parameter.kind == Kind::Bool && token.text != "true" && token.text != "false")
+                return diagnostics.fail(token.place,
+                                        fmt::format("found {} as {}, expected true or false",
+                                                    described(token), ovc::quoted(parameter.name)));
             if (parameter.kind == Kind::Bool)
                 parameter.numbers.push_back(token.text == "true");
             else

@@ -38,8 +38,9 @@ struct Parameter {
     std::vector<double> numbers; // a Bool is 0 or 1
     std::vector<std::string> strings;
     Place place;
-    mutable bool asked = false; // for its value; left_over.h names the others
-    mutable size_t wants = 0;   // values; 0: any number
+    mutable bool asked = false;     // for its value; left_over.h names the others
+    mutable size_t wants = 0;       // values; 0: any number
+    mutable bool evaluated = false; // the texture that it names is, at every hit
 
     bool is_color() const {
         return kind == Kind::Rgb || kind == Kind::Xyz || kind == Kind::Blackbody ||

@@ -111,12 +111,26 @@ uint32_t Textures::image(const std::string& file, const Place& place, ImageTextu
     return add_texture(scene_, std::move(texture));
 }
 
+/// Warns of a word that pbrt refuses. What it says then counts as if it were not there.
+void Textures::check_word(const Parameters& p, std::string_view name,
+                          std::initializer_list<std::string_view> known) const {
+    const std::string word = p.text(name);
+    if (!word.empty() && std::ranges::find(known, std::string_view(word)) == known.end())
+        diagnostics_.missing(
+            fmt::format("{} {}", name, word), p.find(name)->place,
+            fmt::format("the {} {} of a texture left out: it is unknown", name, ovc::quoted(word)));
+}
+
 std::optional<uint32_t> Textures::make_image(const TextureRequest& request) {
     const Parameters& p = request.parameters;
     const std::optional<Mapping> mapping = mapping_of(request);
     const std::string file = p.text("filename");
     if (!mapping || file.empty())
         return std::nullopt;
+    check_word(p, "wrap", {"repeat", "clamp", "black"});
+    check_word(p, "filter", {"point", "bilinear", "trilinear", "EWA", "ewa"});
+    if (!p.text("encoding").starts_with("gamma"))
+        check_word(p, "encoding", {"sRGB", "linear"});
     ImageTexture picture;
     picture.projection = mapping->projection;
     picture.to_picture = mapping->to_picture;
@@ -317,7 +331,9 @@ std::optional<uint32_t> Textures::texture(const Parameters& parameters, std::str
     const Definition* const found = find(parameters, name);
     if (!found || !found->is_pattern)
         return std::nullopt;
-    return make(size_t(found - definitions_.data()));
+    const std::optional<uint32_t> made = make(size_t(found - definitions_.data()));
+    parameters.find(name)->evaluated = made.has_value();
+    return made;
 }
 
 uint32_t Textures::product(uint32_t texture, const vec3& color) {

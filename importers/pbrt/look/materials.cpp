@@ -118,7 +118,8 @@ uint32_t Materials::named(const std::string& name, const Place& place) {
     return 0;
 }
 
-uint32_t Materials::emitter(uint32_t surface, const vec3& radiance, bool two_sided) {
+uint32_t Materials::emitter(uint32_t surface, const vec3& radiance, bool two_sided,
+                            const Place& place) {
     Material m;
     assert(surface < all_.size());
     m.optics = all_[surface].optics.value_or(Optics{.diffuse = all_[surface].color});
@@ -133,3 +134,6 @@ uint32_t Materials::emitter(uint32_t surface, const vec3& radiance, bool two_sid
 }
 
 } // namespace ovc::pbrt
+    if (all_[surface].texture || all_[surface].maps || all_[surface].normal_map)
+        diagnostics_.approximate("texture of an emitter", place,
+                                 "textures of surfaces that emit light are shown by their mean");

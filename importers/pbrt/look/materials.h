@@ -27,7 +27,7 @@ public:
     /// Ends the scope for which begin_scope() returned `begin`.
     void end_scope(size_t begin) { named_.end(begin); }
     /// Returns the material `surface` with an emission of this radiance.
-    uint32_t emitter(uint32_t surface, const vec3& radiance, bool two_sided);
+    uint32_t emitter(uint32_t surface, const vec3& radiance, bool two_sided, const Place& place);
 
     const std::vector<Material>& all() const { return all_; }
     /// Returns the texture that says where the material has holes; kNoTexture: it has none.

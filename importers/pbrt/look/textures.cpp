@@ -54,11 +54,24 @@ void Textures::define(const std::string& name, TextureRequest request) {
     definitions_.push_back(std::move(definition));
 }
 
+void Textures::tell_means(const Parameters& parameters) const {
+    for (const Parameter& p : parameters.all()) {
+        const Definition* const found =
+            p.asked && !p.evaluated ? find(p, takes_floats(p.name)) : nullptr;
+        const bool is_told = found && found->is_made && !found->made;
+        if (found && found->is_pattern && !is_told)
+            say_mean(found->request.type, found->request.place);
+    }
+}
+
 void Textures::tell_mean(const std::string& type, const Place& place) const {
     if (!is_plain(type))
-        diagnostics_.approximate(
-            "texture " + type, place,
-            fmt::format("textures {} are shown by their mean", ovc::quoted(type)));
+        say_mean(type, place);
+}
+
+void Textures::say_mean(const std::string& type, const Place& place) const {
+    diagnostics_.approximate("texture " + type, place,
+                             fmt::format("textures {} are shown by their mean", ovc::quoted(type)));
 }
 
 const Textures::Definition* Textures::find(const Parameters& parameters,

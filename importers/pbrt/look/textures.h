@@ -32,7 +32,10 @@ public:
     /// Adds a texture. Warns of a pattern that is shown by its mean wherever it is used, but not of
     /// floats, which Alphas may evaluate.
     void define(const std::string& name, TextureRequest request);
-    /// Warns that textures of this class are shown by their mean.
+    /// Warns of the textures of a directive that are asked for, but not evaluated at hits.
+    void tell_means(const Parameters& parameters) const;
+    /// Warns that textures of this class are shown by their mean, unless they are plain ones, whose
+    /// parts are told of.
     void tell_mean(const std::string& type, const Place& place) const;
 
     /// Returns the colour that a parameter states, or the mean of the texture that it names;
@@ -73,10 +76,13 @@ private:
 
     const Definition* find(const Parameters& parameters, std::string_view name) const;
     const Definition* find(const Parameter& parameter, bool of_floats) const;
+    void say_mean(const std::string& type, const Place& place) const;
     vec3 mean(const std::string& type, const Parameters& parameters) const;
     std::optional<uint32_t> make(size_t definition);
     std::optional<uint32_t> make_image(const TextureRequest& request);
     std::optional<uint32_t> make_checkerboard(const Definition& definition);
+    void check_word(const Parameters& parameters, std::string_view name,
+                    std::initializer_list<std::string_view> known) const;
     std::optional<uint32_t> make_combined(const Definition& definition, TextureKind kind,
                                           std::initializer_list<std::string_view> names);
     /// Adds a texture of one of two parameters: that of `inside` where the pattern is 1.
