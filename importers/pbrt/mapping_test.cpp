@@ -218,12 +218,14 @@ TEST(PbrtMapping, PathTracingKnowsSurfacesAsTheFileHasThem) {
                                      "[.5 .5 .5] \"float roughness\" .09");
     EXPECT_EQ(plastic.boundary, Boundary::Dielectric);
     expect_color(plastic.reflection, vec3(0.5f), 1e-6f, "plastic's coat");
-    EXPECT_NEAR(plastic.width, 0.3f, 1e-6f);
+    EXPECT_NEAR(plastic.width, 0.4349f, 1e-4f) << "as v3 maps a roughness of 0.09";
+    EXPECT_EQ(optics_of("Material \"metal\" \"float roughness\" 1").width, 1);
+    EXPECT_NEAR(optics_of("Material \"disney\" \"float roughness\" 0.5").width, 0.25f, 1e-6f);
     const Optics coated = optics_of("Material \"coateddiffuse\" \"rgb reflectance\" [.5 1 0] "
                                     "\"bool remaproughness\" false \"float roughness\" 0.05");
     EXPECT_NEAR(coated.width, 0.05f, 1e-6f);
-    // The coat throws 0.596 of the light from below back: 1 - (1 - 0.0918) / 1.5^2.
-    expect_color(coated.diffuse, {0.5f * 0.4036f / (1 - 0.5f * 0.5964f), 1, 0}, 1e-3f, "coated");
+    EXPECT_TRUE(coated.internal_reflection);
+    expect_color(coated.diffuse, {0.5f, 1, 0}, 1e-6f, "coated");
     const Optics mirror = optics_of("Material \"mirror\" \"rgb Kr\" [.7 .8 .9]");
     EXPECT_EQ(mirror.boundary, Boundary::Mirror);
     expect_color(mirror.reflection, {0.7f, 0.8f, 0.9f}, 1e-6f, "mirror");
@@ -240,6 +242,7 @@ TEST(PbrtMapping, PathTracingKnowsSurfacesAsTheFileHasThem) {
     const Optics veil = optics_of("Material \"uber\" \"color opacity\" [.25 .25 .25]");
     EXPECT_EQ(veil.boundary, Boundary::None);
     expect_color(veil.through, vec3(0.75f), 1e-6f, "holes");
+    expect_color(veil.diffuse, vec3(0.25f * 0.25f), 1e-6f, "what is left");
 }
 
 TEST(PbrtMapping, PathTracingKnowsEmittersAndNoneOfTheirStandIns) {
@@ -302,6 +305,55 @@ TEST(PbrtMapping, MaterialsAreMixedColorByColor) {
         "Material \"mix\" \"string namedmaterial1\" \"a\" \"string namedmaterial2\" \"b\" "
         "\"rgb amount\" [.25 .5 1]");
     expect_color(mixed.color, {0.25f, 0.5f, 1}, 1e-6f, "mixed");
+}
+
+/// Half of white paint and half of a mirror reflect all light, whichever of them is first.
+TEST(PbrtMapping, AMixKeepsTheLightOfBothMaterials) {
+    using Boundary = Optics::Boundary;
+    const std::string both = "MakeNamedMaterial \"m\" \"string type\" \"matte\" \"rgb Kd\" "
+                             "[1 1 1] MakeNamedMaterial \"r\" \"string type\" \"mirror\" \"rgb "
+                             "Kr\" [1 1 1] MakeNamedMaterial \"g\" \"string type\" \"glass\" ";
+    const auto mix = [&](const char* names, const char* amount) {
+        return material_of(both + "Material \"mix\" \"string materials\" " + names +
+                           " \"float amount\" " + amount);
+    };
+    for (const auto& [names, amount] :
+         {std::pair("[\"m\" \"r\"]", "0.5"), std::pair("[\"r\" \"m\"]", "0.5"),
+          std::pair("[\"m\" \"r\"]", "0.2"), std::pair("[\"r\" \"m\"]", "0.8")}) {
+        const Material m = mix(names, amount);
+        ASSERT_EQ(m.optics->boundary, Boundary::Mirror) << names << amount;
+        const float share = m.optics->reflection.x;
+        EXPECT_NEAR(share, amount[2] == '5' ? 0.5 : 0.2, 1e-6) << names << amount;
+        // The ground lies below the mirror.
+        EXPECT_NEAR(share + (1 - share) * m.optics->diffuse.x, 1, 1e-6) << names << amount;
+        ASSERT_TRUE(m.finish && m.mirror == 1);
+        EXPECT_NEAR(m.color.x * m.finish->diffuse + m.finish->reflection.x, 1, 1e-6);
+    }
+    const Material clear = mix("[\"m\" \"g\"]", "0.25");
+    EXPECT_EQ(clear.optics->boundary, Boundary::Dielectric);
+    EXPECT_NEAR(clear.optics->through.x, 0.25, 1e-6);
+    EXPECT_NEAR(clear.optics->diffuse.x, 0.75, 1e-6);
+    EXPECT_EQ(mix("[\"r\" \"g\"]", "0.25").optics->boundary, Boundary::Mirror);
+    const Material veil =
+        material_of(both + "MakeNamedMaterial \"n\" \"string type\" \"interface\" "
+                           "Material \"mix\" \"string materials\" [\"m\" \"n\"] "
+                           "\"float amount\" 0.75");
+    EXPECT_EQ(veil.optics->through, vec3(0.75f));
+    EXPECT_EQ(veil.optics->diffuse, vec3(0.25f));
+    EXPECT_EQ(veil.transmission, 0.75f);
+    EXPECT_EQ(veil.color * veil.finish->diffuse, vec3(0.25f));
+}
+
+/// In v4 lights whose spectra are pairs have the luminance of white, times their scale.
+TEST(PbrtMapping, SpectraOfLightsTellNoStrengthInV4) {
+    const auto light_of = [](const std::string& film) {
+        const Scene scene = scene_of("Film \"" + film +
+                                     "\" LightSource \"distant\" \"spectrum L\" [300 7 900 7] "
+                                     "\"float scale\" 3");
+        return scene.lights.at(0).color / scene.exposure;
+    };
+    expect_color(light_of("image"), vec3(21), 1e-3f, "v3");
+    expect_color(light_of("rgb"), vec3(3), 1e-4f, "v4");
 }
 
 TEST(PbrtMapping, CamerasSeeWhatPbrtsSee) {

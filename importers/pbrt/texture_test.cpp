@@ -210,6 +210,67 @@ TEST(PbrtTexture, APatternThatIsNotKnownIsItsMeanAndSaid) {
               (std::vector<std::string>{"a.pbrt:2: textures 'ptex' are shown by their mean"}));
 }
 
+TEST(PbrtTexture, WhatIsShownByItsMeanIsSaidWhereverItStands) {
+    const std::string picture =
+        "Texture \"c\" \"color\" \"imagemap\" \"string filename\" \"a.png\"\n"
+        "Texture \"s\" \"color\" \"scale\" \"texture tex1\" \"c\" \"color tex2\" [2 2 2]\n";
+    const auto warnings = [&](const std::string& material) {
+        return read_textured(picture + material + kTexturedTriangle).warnings;
+    };
+    const std::vector<std::string> told = {"a.pbrt:2: textures 'imagemap' are shown by their mean"};
+    EXPECT_EQ(warnings("Material \"glass\" \"texture Kt\" \"c\""), told);
+    EXPECT_EQ(warnings("Material \"glass\" \"texture Kr\" \"c\""), told);
+    EXPECT_EQ(warnings("Material \"metal\" \"texture k\" \"c\""), told);
+    EXPECT_EQ(warnings("MakeNamedMaterial \"m\" \"string type\" \"uber\" \"texture Kd\" \"c\" "
+                       "\"texture Kt\" \"c\""),
+              told);
+    EXPECT_EQ(warnings("Material \"glass\" \"texture Kt\" \"s\""),
+              (std::vector<std::string>{"a.pbrt:3: textures 'scale' are shown by their mean"}));
+    EXPECT_EQ(warnings("Material \"matte\" \"texture Kd\" \"s\""), std::vector<std::string>());
+    EXPECT_EQ(warnings("Material \"matte\" \"texture Kd\" \"c\" AreaLightSource \"diffuse\""),
+              (std::vector<std::string>{
+                  "a.pbrt:4: textures of surfaces that emit light are shown by their mean"}));
+}
+
+TEST(PbrtTexture, WordsThatPbrtRefusesAreSaid) {
+    const auto warnings = [](const std::string& words) {
+        return read_textured("Texture \"c\" \"color\" \"imagemap\" \"string filename\" \"a.png\" " +
+                             words + " Material \"matte\" \"texture Kd\" \"c\"" + kTexturedTriangle)
+            .warnings;
+    };
+    EXPECT_EQ(warnings("\"string wrap\" \"mirror\""),
+              (std::vector<std::string>{
+                  "a.pbrt:2: the wrap 'mirror' of a texture left out: it is unknown"}));
+    EXPECT_EQ(warnings("\"string filter\" \"cubic\" \"string encoding\" \"rec709\"").size(), 2u);
+    EXPECT_TRUE(warnings("\"string filter\" \"EWA\" \"string encoding\" \"gamma 2.2\"").empty());
+}
+
+/// Half of the picture and half of red, then as much red as the picture's mean says.
+TEST(PbrtTexture, MaterialsAreMixedTexelByTexel) {
+    const std::string materials =
+        "Texture \"c\" \"color\" \"imagemap\" \"string filename\" \"a.png\" "
+        "MakeNamedMaterial \"a\" \"string type\" \"matte\" \"texture Kd\" \"c\" "
+        "MakeNamedMaterial \"b\" \"string type\" \"matte\" \"rgb Kd\" [1 0 0] Material \"mix\" ";
+    const TexturedScene half =
+        read_textured(materials + "\"string materials\" [\"a\" \"b\"]" + kTexturedTriangle);
+    EXPECT_TRUE(half.warnings.empty());
+    expect_near(half.color_of(dvec3(0), {0.25, 0.75}),
+                0.5f * (vec3(0.25f, 0.75f, 0.5f) + vec3(1, 0, 0)));
+    const TexturedScene masked =
+        read_textured(materials + "\"string materials\" [\"a\" \"b\"] \"texture amount\" \"c\"" +
+                      kTexturedTriangle);
+    EXPECT_TRUE(masked.warnings.empty());
+    expect_near(masked.color_of(dvec3(0), {0, 0.25}),
+                0.75f * vec3(0, 0.25f, 0.5f) + 0.25f * vec3(1, 0, 0));
+    const TexturedScene v3 =
+        read_textured(materials +
+                      "\"string namedmaterial1\" \"a\" \"string namedmaterial2\" \"b\" "
+                      "\"texture amount\" \"c\"" +
+                      kTexturedTriangle);
+    expect_near(v3.color_of(dvec3(0), {0, 0.25}),
+                0.25f * vec3(0, 0.25f, 0.5f) + 0.75f * vec3(1, 0, 0));
+}
+
 TEST(PbrtTexture, MaterialsTakeColorsReflectionsHolesAndBumps) {
     const std::string pictures =
         "Texture \"c\" \"color\" \"imagemap\" \"string filename\" \"a.png\" "

@@ -203,6 +203,8 @@ bool Interpreter::film() {
     if (!read_typed(type, parameters))
         return false;
     film_ = read_film(parameters, diagnostics_);
+    if (type == "rgb" || type == "gbuffer" || type == "spectral") // no earlier version has these
+        lights_.read_as_v4();
     tell_left_over(parameters, "films", type, diagnostics_);
     return true;
 }

@@ -227,10 +227,7 @@ std::optional<uint32_t> Textures::make_bilerp(const Definition& definition) {
         return TextureStop{0, {}, add_texture(scene_, std::move(share))};
     };
     const auto mixed = [&](TextureStop low, TextureStop high, TextureStop share) {
-        Texture mix;
-        mix.kind = TextureKind::Mix;
-        mix.stops = {low, high, share};
-        return TextureStop{0, {}, add_texture(scene_, std::move(mix))};
+        return TextureStop{0, {}, mix(low, high, share)};
     };
     std::vector<TextureStop> corners;
     for (const std::string_view name : {"v00", "v01", "v10", "v11"}) {
@@ -343,6 +340,13 @@ uint32_t Textures::product(uint32_t texture, const vec3& color) {
     both.kind = TextureKind::Product;
     both.stops = {{0, {}, texture}, {0, {color}, kNoTexture}};
     return add_texture(scene_, std::move(both));
+}
+
+uint32_t Textures::mix(const TextureStop& low, const TextureStop& high, const TextureStop& share) {
+    Texture mix;
+    mix.kind = TextureKind::Mix;
+    mix.stops = {low, high, share};
+    return add_texture(scene_, std::move(mix));
 }
 
 bool Textures::is_on_uv(uint32_t texture) const {

@@ -39,8 +39,14 @@ float factor_of(const Parameters& p, std::string_view name, double of_one) {
 } // namespace
 
 vec3 Lights::scaled(const Parameters& p, std::string_view color, const vec3& otherwise) const {
+    vec3 light = textures_.color(p, color, otherwise);
+    const Parameter* const stated = p.find(color);
+    if (is_v4_ && stated && stated->kind == Kind::Spectrum && stated->numbers.size() > 1) {
+        const float luminance = glm::dot(light, vec3(0.2126f, 0.7152f, 0.0722f));
+        light /= luminance > 0 ? luminance : 1;
+    }
     // v2 and v3 scale by a colour, v4 by a number.
-    return textures_.color(p, color, otherwise) * textures_.color(p, "scale", vec3(1));
+    return light * textures_.color(p, "scale", vec3(1));
 }
 
 bool Lights::add(const std::string& type, const Parameters& parameters, const dmat4& to_world,
@@ -178,10 +184,6 @@ void Lights::add_infinite(const Parameters& p, const dmat4& to_world, const Plac
     const bool has_map = p.find("mapname") || p.find("filename");
     const float factor = has_map ? 1 : factor_of(p, "illuminance", pi);
     const vec3 radiance = factor * scaled(p, "L", vec3(1));
-    if (has_map)
-        diagnostics_.approximate("environment map", place,
-                                 "environment maps light surfaces as a sky of even colours without "
-                                 "--integrator path");
     const Background colors; // the default sky, of luminance about 1/2 to 1
     if (!sky_)
         sky_ = Background{vec3(0), vec3(0)};

@@ -3,10 +3,7 @@
 // Based on: pbrt's materials; Blinn 1977 (a lobe of exponent n); Schlick 1994 (metals).
 #include "importers/pbrt/look/material_families.h"
 
-#include "core/fresnel.h"
 #include "importers/file/picture_path.h"
-
-#include <cassert>
 
 namespace ovc::pbrt {
 
@@ -18,19 +15,29 @@ constexpr double kMirrorRoughness = 0.1;
 /// The index of refraction of plastic, paint and other materials that do not state one.
 constexpr double kPlasticIor = 1.5;
 
-/// Returns the width of the microfacets' slopes, 0 to 1: the root of pbrt's roughness, unless the
-/// file says that the roughness is the width itself.
-double as_width(const MaterialContext& c, double roughness) {
-    const double r = std::clamp(roughness, 0.0, 1.0);
-    return c.p.flag("remaproughness", true) ? std::sqrt(r) : r;
-}
-
-/// Returns the same for the roughness that most materials have.
+/// Returns the roughness that most materials have.
 double roughness_of(const MaterialContext& c, double otherwise) {
     double r = c.number("roughness", otherwise);
     if (c.p.find("uroughness") || c.p.find("vroughness"))
         r = 0.5 * (c.number("uroughness", r) + c.number("vroughness", r));
-    return as_width(c, r);
+    return std::clamp(r, 0.0, 1.0);
+}
+
+/// Returns the width of the microfacets' slopes, 0 to 1, as v4 has it: the root of the roughness,
+/// unless the file says that the roughness is the width itself.
+double width_of(const MaterialContext& c, double roughness) {
+    return c.p.flag("remaproughness", true) ? std::sqrt(roughness) : roughness;
+}
+
+/// Returns the same for the materials of v3, which fits a curve to exponents of highlights.
+double width_before_v4(const MaterialContext& c, double roughness) {
+    if (!c.p.flag("remaproughness", true))
+        return roughness;
+    double width = 0;
+    const double x = std::log(std::max(roughness, 1e-3));
+    for (const double coefficient : {0.000640711, 0.0171201, 0.1734, 0.819955, 1.62142})
+        width = width * x + coefficient;
+    return std::min(width, 1.0);
 }
 
 /// Adds a highlight as strong as that of microfacets which reflect `share`.
@@ -110,13 +117,6 @@ Optics varnished(const vec3& color, const vec3& coat, double ior, double width) 
             .width = float(width)};
 }
 
-/// Returns the color that paint has from above if varnish throws part of its light back onto it.
-vec3 below_varnish(const vec3& color, double ior) {
-    assert(ior >= 1);
-    const float back = float(1 - (1 - fresnel_mean(ior)) / (ior * ior));
-    return color * (1 - back) / (vec3(1) - back * color);
-}
-
 } // namespace
 
 Material make_matte(const MaterialContext& c) {
@@ -133,7 +133,7 @@ Material make_plastic(const MaterialContext& c) {
     take_color(c, v4 ? "reflectance" : "Kd", vec3(1), m);
     m.finish = plain_finish();
     const vec3 coat = c.color("Ks", 0.25f);
-    const double width = roughness_of(c, 0.1);
+    const double width = width_before_v4(c, roughness_of(c, 0.1));
     add_highlight(*m.finish, mean(coat), width);
     m.optics = varnished(m.color, coat, kPlasticIor, width);
     take_reflection(c, "Ks", m);
@@ -142,13 +142,14 @@ Material make_plastic(const MaterialContext& c) {
 
 Material make_coated_diffuse(const MaterialContext& c) {
     Material m = matte(c, "reflectance");
-    const double width = roughness_of(c, 0);
+    const double width = width_of(c, roughness_of(c, 0));
     m.ior = stated_ior(c).value_or(1.5);
     const double f0 = (m.ior - 1) * (m.ior - 1) / ((m.ior + 1) * (m.ior + 1));
     add_highlight(*m.finish, float(f0), width);
     if (width <= kMirrorRoughness)
         add_coat(m, vec3(1));
-    m.optics = varnished(below_varnish(m.color, std::max(m.ior, 1.0)), vec3(1), m.ior, width);
+    m.optics = varnished(m.color, vec3(1), m.ior, width);
+    m.optics->internal_reflection = true;
     return m;
 }
 
@@ -237,21 +238,22 @@ Material metal(const vec3& color, double width) {
 }
 
 Material make_metal(const MaterialContext& c) {
-    Material m = metal(metal_of(c), roughness_of(c, 0.01));
+    Material m = metal(metal_of(c), width_before_v4(c, roughness_of(c, 0.01)));
     take_reflection(c, "reflectance", m);
     return m;
 }
 
 Material make_conductor(const MaterialContext& c) {
     const bool coated = c.p.find("conductor.roughness") != nullptr;
-    Material m = metal(metal_of(c), coated ? as_width(c, c.number("conductor.roughness", 0))
-                                           : roughness_of(c, 0));
+    const double roughness =
+        coated ? std::clamp(c.number("conductor.roughness", 0), 0.0, 1.0) : roughness_of(c, 0);
+    Material m = metal(metal_of(c), width_of(c, roughness));
     take_reflection(c, "reflectance", m);
     return m;
 }
 
 Material make_shiny_metal(const MaterialContext& c) {
-    return metal(c.color("Kr", 1) * c.color("Ks", 1), roughness_of(c, 0.1));
+    return metal(c.color("Kr", 1) * c.color("Ks", 1), width_before_v4(c, roughness_of(c, 0.1)));
 }
 
 Material make_uber(const MaterialContext& c) {
@@ -262,7 +264,7 @@ Material make_uber(const MaterialContext& c) {
     take_color(c, "Kd", opacity, m);
     m.finish = plain_finish();
     const vec3 ks = c.color("Ks", 0.25f) * opacity;
-    const double width = roughness_of(c, 0.1);
+    const double width = width_before_v4(c, roughness_of(c, 0.1));
     add_highlight(*m.finish, mean(ks), width);
     const vec3 kr = c.color("Kr", 0) * opacity;
     if (mean(kr) > 0)
@@ -282,7 +284,7 @@ Material make_uber(const MaterialContext& c) {
             m.optics->boundary = Optics::Boundary::None;
         }
         m.optics->through = through;
-        m.optics->diffuse *= vec3(1) - through;
+        m.optics->diffuse = glm::min(m.optics->diffuse, vec3(1) - through);
     }
     return m;
 }
@@ -312,10 +314,10 @@ Material make_subsurface(const MaterialContext& c) {
 Material make_disney(const MaterialContext& c) {
     if (c.number("spectrans", 0) > 0.5)
         return make_glass(c, c.p.flag("thin", false));
+    const double roughness = roughness_of(c, 0.5), width = roughness * roughness;
     if (c.number("metallic", 0) > 0.5)
-        return metal(c.color("color", 0.5f), roughness_of(c, 0.5));
+        return metal(c.color("color", 0.5f), width);
     Material m = matte(c, "color");
-    const double width = roughness_of(c, 0.5);
     add_highlight(*m.finish, 0.04f, width);
     m.optics = varnished(m.color, vec3(1), kPlasticIor, width);
     return m;
@@ -332,6 +334,7 @@ Material make_invisible(const MaterialContext&) {
     Material m;
     m.color = vec3(0);
     m.transmission = 1;
+    m.optics = Optics{.through = vec3(1)};
     return m;
 }
 

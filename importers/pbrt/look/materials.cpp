@@ -2,6 +2,7 @@
 // Materials keeps each material once, finds them by name and mixes them.
 #include "importers/pbrt/look/materials.h"
 
+#include "core/fresnel.h"
 #include "importers/file/text.h"
 #include "importers/pbrt/look/material_families.h"
 
@@ -11,10 +12,6 @@
 #include <cassert>
 
 namespace ovc::pbrt {
-
-static float blend(float a, float b, float share) {
-    return a + (b - a) * share;
-}
 
 bool is_invisible(const Material& m) {
     return !m.finish && m.transmission == 1 && m.mirror == 0 && m.ior == 1 && m.filter == vec3(1);
@@ -64,35 +61,121 @@ Materials::Mapped Materials::mapped(const std::string& type, const Parameters& p
     return {make_matte(context)};
 }
 
-/// Mixes part by part; the material of the larger share decides what cannot be mixed.
+/// Returns the share that a boundary reflects of light from all directions.
+static vec3 mean_reflection(const Optics& optics) {
+    switch (optics.boundary) {
+    case Optics::Boundary::None:
+        return vec3(0);
+    case Optics::Boundary::Mirror:
+        return optics.reflection;
+    case Optics::Boundary::Metal:
+        return glm::mix(optics.reflection, vec3(1), 1 / 21.0f);
+    default:
+        return optics.reflection * float(fresnel_mean(optics.ior));
+    }
+}
+
+static bool has_boundary(const Material& m) {
+    return m.optics && m.optics->boundary != Optics::Boundary::None;
+}
+
+static bool is_one_boundary(const Optics& a, const Optics& b) {
+    return a.boundary == b.boundary && a.ior == b.ior && a.width == b.width &&
+           a.internal_reflection == b.internal_reflection;
+}
+
+namespace {
+
+/// Two materials of which the second has the share `amount`.
+struct Mixture {
+    const Material &a, &b;
+    vec3 amount;
+    bool keeps_b; // what cannot be mixed is that of b
+
+    template <class T>
+    T of(const T& in_a, const T& in_b) const {
+        return glm::mix(in_a, in_b, T(amount));
+    }
+    float of(float in_a, float in_b) const { return in_a + (in_b - in_a) * mean(amount); }
+};
+
+/// The factors of the grounds of two materials that lie below one boundary now.
+struct Grounds {
+    vec3 a{1}, b{1};
+};
+
+} // namespace
+
+/// The colors of two finishes count by the light that they scatter.
+static void mix_finishes(const Mixture& mix, Material& m) {
+    const Finish invisible{.diffuse = 0};
+    const Finish a = mix.a.finish.value_or(invisible), b = mix.b.finish.value_or(invisible);
+    m.finish = m.finish.value_or(invisible);
+    m.finish->diffuse = mix.of(a.diffuse, b.diffuse);
+    m.finish->specular = mix.of(a.specular, b.specular);
+    m.finish->reflection = mix.of(a.reflection, b.reflection);
+    m.finish->grazing_reflection = mix.of(a.grazing_reflection, b.grazing_reflection);
+    if (m.finish->diffuse > 0)
+        m.color = mix.of(mix.a.color * a.diffuse, mix.b.color * b.diffuse) / m.finish->diffuse;
+}
+
+/// Each ground keeps the light that comes out of its own boundary.
+static Grounds mix_optics(const Mixture& mix, Optics& m) {
+    const Optics &a = *mix.a.optics, &b = *mix.b.optics;
+    const bool is_one = is_one_boundary(a, b);
+    m.through = mix.of(a.through, b.through);
+    m.reflection = is_one ? mix.of(a.reflection, b.reflection)
+                          : (mix.keeps_b ? mix.amount : vec3(1) - mix.amount) * m.reflection;
+    m.internal_reflection = is_one && a.internal_reflection;
+    // Of a clear surface, whose ground lies beside the glass, no light is lost to the boundary.
+    const vec3 below =
+        m.through == vec3(0) ? glm::max(vec3(1) - mean_reflection(m), vec3(1e-6f)) : vec3(1);
+    const auto factor = [&](const Optics& of) {
+        const vec3 outside =
+            of.internal_reflection && !is_one ? share_from_below(of.diffuse, of.ior) : vec3(1);
+        return outside * (vec3(1) - mean_reflection(of)) / below;
+    };
+    const Grounds grounds{factor(a), factor(b)};
+    m.diffuse = glm::min(mix.of(grounds.a * a.diffuse, grounds.b * b.diffuse), vec3(1));
+    return grounds;
+}
+
+/// Mixes part by part. What cannot be mixed is that of the only material that has a boundary, or
+/// else of the larger share.
 Material Materials::mix(const Parameters& parameters, const Place& place) {
     std::string names[2] = {parameters.text("namedmaterial1"), parameters.text("namedmaterial2")};
-    if (const Parameter* p = parameters.find("materials", {Kind::String});
-        p && p->strings.size() >= 2)
-        std::copy_n(p->strings.begin(), 2, names);
+    const Parameter* const v4 = parameters.find("materials", {Kind::String});
+    if (v4 && v4->strings.size() >= 2)
+        std::copy_n(v4->strings.begin(), 2, names);
+    else // v3's amount is that of the first
+        std::swap(names[0], names[1]);
     const Material a = all_[named(names[0], place)], b = all_[named(names[1], place)];
-    // v3 counts from the second to the first, v4 the other way round.
-    const double amount = textures_.number(parameters, "amount", 0.5);
-    const bool v4 = parameters.find("materials") != nullptr;
-    const float share = float(std::clamp(v4 ? amount : 1 - amount, 0.0, 1.0));
-    const vec3 of_colors = textures_.color(parameters, "amount", vec3(0.5f));
-    const vec3 shares = glm::clamp(v4 ? of_colors : vec3(1) - of_colors, vec3(0), vec3(1));
-    Material m = share < 0.5f ? a : b;
-    m.color = glm::mix(a.color, b.color, shares);
-    m.transmission = blend(a.transmission, b.transmission, share);
-    m.filter = glm::mix(a.filter, b.filter, shares);
-    if (a.finish && b.finish) {
-        m.finish->diffuse = blend(a.finish->diffuse, b.finish->diffuse, share);
-        m.finish->specular = blend(a.finish->specular, b.finish->specular, share);
-        m.finish->reflection = glm::mix(a.finish->reflection, b.finish->reflection, share);
-        m.finish->grazing_reflection =
-            glm::mix(a.finish->grazing_reflection, b.finish->grazing_reflection, share);
-    }
-    if (a.optics && b.optics) {
-        m.optics->diffuse = glm::mix(a.optics->diffuse, b.optics->diffuse, shares);
-        m.optics->through = glm::mix(a.optics->through, b.optics->through, shares);
-        m.optics->reflection = (share < 0.5f ? 1 - share : share) * m.optics->reflection;
-    }
+    const vec3 amount =
+        glm::clamp(textures_.color(parameters, "amount", vec3(0.5f)), vec3(0), vec3(1));
+    const Mixture mixture{
+        a, b, amount, has_boundary(a) != has_boundary(b) ? has_boundary(b) : mean(amount) >= 0.5f};
+    Material m = mixture.keeps_b ? b : a;
+    m.mirror = std::max(a.mirror, b.mirror);
+    m.transmission = mixture.of(a.transmission, b.transmission);
+    m.filter = mixture.of(a.filter, b.filter);
+    if (a.finish || b.finish)
+        mix_finishes(mixture, m);
+    if (!a.optics || !b.optics)
+        return m;
+    if (has_boundary(a) && has_boundary(b) && !is_one_boundary(*a.optics, *b.optics))
+        diagnostics_.approximate("mix of boundaries", place,
+                                 "of a mix of two materials that shine, one alone shines");
+    const Grounds grounds = mix_optics(mixture, *m.optics);
+    const auto share = textures_.texture(parameters, "amount");
+    if (!a.texture && !b.texture && !share)
+        return m;
+    const auto stop = [&](const Material& of, const vec3& factor) {
+        return of.texture ? TextureStop{0, {}, textures_.product(of.texture->texture, factor)}
+                          : TextureStop{0, {factor * of.optics->diffuse}, kNoTexture};
+    };
+    m.texture = placed_in_world(
+        textures_.mix(stop(a, grounds.a), stop(b, grounds.b),
+                      share ? TextureStop{0, {}, *share} : TextureStop{0, {amount}, kNoTexture}));
     return m;
 }
 
@@ -122,6 +205,9 @@ uint32_t Materials::emitter(uint32_t surface, const vec3& radiance, bool two_sid
                             const Place& place) {
     Material m;
     assert(surface < all_.size());
+    if (all_[surface].texture || all_[surface].maps || all_[surface].normal_map)
+        diagnostics_.approximate("texture of an emitter", place,
+                                 "textures of surfaces that emit light are shown by their mean");
     m.optics = all_[surface].optics.value_or(Optics{.diffuse = all_[surface].color});
     m.optics->emission = radiance;
     m.optics->two_sided = two_sided;
@@ -134,6 +220,3 @@ uint32_t Materials::emitter(uint32_t surface, const vec3& radiance, bool two_sid
 }
 
 } // namespace ovc::pbrt
-    if (all_[surface].texture || all_[surface].maps || all_[surface].normal_map)
-        diagnostics_.approximate("texture of an emitter", place,
-                                 "textures of surfaces that emit light are shown by their mean");

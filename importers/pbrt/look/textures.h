@@ -51,6 +51,8 @@ public:
     std::optional<uint32_t> texture(const Parameters& parameters, std::string_view name);
     /// Returns the product of a texture of the scene and a colour.
     uint32_t product(uint32_t texture, const vec3& color);
+    /// Returns a texture of two, of which the second has a share.
+    uint32_t mix(const TextureStop& low, const TextureStop& high, const TextureStop& share);
     /// Adds a picture as a texture of the scene. place: names it.
     uint32_t image(const std::string& file, const Place& place, ImageTexture image, bool on_uv);
     std::array<size_t, 2> begin_scope() const { return {by_name_[0].begin(), by_name_[1].begin()}; }
@@ -74,15 +76,15 @@ private:
         std::optional<uint32_t> made; // nothing: it is shown by its mean
     };
 
+    void say_mean(const std::string& type, const Place& place) const;
     const Definition* find(const Parameters& parameters, std::string_view name) const;
     const Definition* find(const Parameter& parameter, bool of_floats) const;
-    void say_mean(const std::string& type, const Place& place) const;
     vec3 mean(const std::string& type, const Parameters& parameters) const;
     std::optional<uint32_t> make(size_t definition);
-    std::optional<uint32_t> make_image(const TextureRequest& request);
-    std::optional<uint32_t> make_checkerboard(const Definition& definition);
     void check_word(const Parameters& parameters, std::string_view name,
                     std::initializer_list<std::string_view> known) const;
+    std::optional<uint32_t> make_image(const TextureRequest& request);
+    std::optional<uint32_t> make_checkerboard(const Definition& definition);
     std::optional<uint32_t> make_combined(const Definition& definition, TextureKind kind,
                                           std::initializer_list<std::string_view> names);
     /// Adds a texture of one of two parameters: that of `inside` where the pattern is 1.
