@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Puts a soup behind the C ABI, for tests: handles with owners, structs with their size set, and
-// the fixture of tests that need a device.
+// Puts a soup behind the C ABI, for tests: handles with owners, and the fixture of tests that need
+// a device.
 #pragma once
 
 #include "core/ray.h"
 #include "core/soup.h"
-#include "plugin/overcast.h"
+#include "tests/abi/abi.h"
 
 #include <gtest/gtest.h>
 
@@ -17,17 +17,6 @@
 #include <vector>
 
 namespace ovc::test {
-
-inline const ovc_api& api() {
-    return *ovc_get_api(OVC_ABI_VERSION);
-}
-
-template <class T>
-T sized() {
-    T value{};
-    value.struct_size = sizeof(T);
-    return value;
-}
 
 struct DestroyDevice {
     void operator()(ovc_device device) const { api().destroy_device(device); }

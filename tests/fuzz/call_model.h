@@ -5,7 +5,7 @@
 
 #include "core/exact/triangle.h"
 #include "core/soup.h"
-#include "plugin/overcast.h"
+#include "tests/abi/abi.h"
 
 #include <algorithm>
 #include <cmath>
@@ -27,16 +27,8 @@ namespace ovc::fuzz {
     std::abort();
 }
 
-inline const ovc_api& api() {
-    return *ovc_get_api(OVC_ABI_VERSION);
-}
-
-template <class T>
-T sized() {
-    T value{};
-    value.struct_size = sizeof(T);
-    return value;
-}
+using test::api;
+using test::sized;
 
 /// Choices from bytes; zeros when they are used up.
 class Choices {
