@@ -58,8 +58,8 @@ private:
         if (meshes() < 2 || count() == first())
             return;
         const uint64_t numbers = count() - first();
-        const uint64_t most = std::max(meshes(), kMinStretches);
-        for (stretch_bits_ = 0; numbers >> stretch_bits_ > most;)
+        const uint64_t max_stretches = std::max(meshes(), kMinStretches);
+        for (stretch_bits_ = 0; numbers >> stretch_bits_ > max_stretches;)
             ++stretch_bits_;
         const uint32_t last = uint32_t(meshes()) - 1;
         uint32_t mesh = 0;

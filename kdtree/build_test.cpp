@@ -52,13 +52,13 @@ TEST(KdTreeBuild, EveryTriangleIsInEveryLeafItTouches) {
 
 TEST(KdTreeBuild, StoppedByCountLeavesNoMoreThanThat) {
     const Soup soup = test::random_soup(4, 5000, 0.01);
-    for (const uint32_t most : {2000u, 500u, 100u}) {
+    for (const uint32_t max_triangles : {2000u, 500u, 100u}) {
         KdBuildOptions options;
-        options.max_leaf_triangles = most;
+        options.max_leaf_triangles = max_triangles;
         const KdTree tree = build_kd_tree(soup, options);
         for (const KdNode& node : tree.nodes)
             if (node.is_leaf()) {
-                EXPECT_LE(node.count(), most);
+                EXPECT_LE(node.count(), max_triangles);
             }
         EXPECT_LT(tree.references.size(), 2 * soup.triangle_count());
     }

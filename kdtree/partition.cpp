@@ -56,12 +56,12 @@ std::vector<std::vector<TriangleId>> gather(const Soup& soup, const CellFinder& 
     return members;
 }
 
-/// Hands `triangles` to leaves of exactly `most` each, except for the last, by halving them at the
-/// median of their centres along the axis on which these are farthest apart.
-void halve(const Soup& soup, std::span<TriangleId> triangles, uint32_t most,
+/// Hands `triangles` to leaves of exactly `max_triangles` each, except for the last, by halving
+/// them at the median of their centres along the axis on which these are farthest apart.
+void halve(const Soup& soup, std::span<TriangleId> triangles, uint32_t max_triangles,
            std::vector<std::vector<TriangleId>>& lists) {
-    assert(most > 0);
-    if (triangles.size() <= most) {
+    assert(max_triangles > 0);
+    if (triangles.size() <= max_triangles) {
         lists.emplace_back(triangles.begin(), triangles.end());
         std::ranges::sort(lists.back());
         return;
@@ -74,12 +74,12 @@ void halve(const Soup& soup, std::span<TriangleId> triangles, uint32_t most,
     for (const TriangleId id : triangles)
         centers.add(center(id));
     const int axis = major_axis(centers.extent());
-    const size_t leaves = (triangles.size() + most - 1) / most;
-    const size_t below = leaves / 2 * most;
+    const size_t leaves = (triangles.size() + max_triangles - 1) / max_triangles;
+    const size_t below = leaves / 2 * max_triangles;
     std::ranges::nth_element(triangles, triangles.begin() + ptrdiff_t(below), {},
                              [&](TriangleId id) { return std::pair(center(id)[axis], id); });
-    halve(soup, triangles.first(below), most, lists);
-    halve(soup, triangles.subspan(below), most, lists);
+    halve(soup, triangles.first(below), max_triangles, lists);
+    halve(soup, triangles.subspan(below), max_triangles, lists);
 }
 
 Frame frame_of(const Box& box, double reach) {
@@ -93,11 +93,12 @@ Frame frame_of(const Box& box, double reach) {
 
 /// Returns the triangles of a cell that cannot be cut, for several leaves in one place.
 std::vector<std::vector<TriangleId>> in_parts(std::span<const TriangleId> triangles,
-                                              uint32_t most) {
-    assert(most > 0);
+                                              uint32_t max_triangles) {
+    assert(max_triangles > 0);
     std::vector<std::vector<TriangleId>> parts;
-    for (size_t at = 0; at < triangles.size(); at += most) {
-        const auto part = triangles.subspan(at, std::min<size_t>(most, triangles.size() - at));
+    for (size_t at = 0; at < triangles.size(); at += max_triangles) {
+        const auto part =
+            triangles.subspan(at, std::min<size_t>(max_triangles, triangles.size() - at));
         parts.emplace_back(part.begin(), part.end());
     }
     return parts;
@@ -115,19 +116,19 @@ public:
     /// Appends the tree over `box`, which holds `triangles`, by a sample of them. Cells with more
     /// triangles than the sample suggested are cut again by all they hold. finds_far: triangles
     /// that reach far may go into a leaf of their own; only where there are no leaves yet.
-    void cut(std::span<const TriangleId> triangles, const Box& box, uint32_t most,
+    void cut(std::span<const TriangleId> triangles, const Box& box, uint32_t max_triangles,
              const Sample& drawn = {}, bool finds_far = false) {
-        const uint32_t rate = sample_rate(triangles.size(), most);
+        const uint32_t rate = sample_rate(triangles.size(), max_triangles);
         if (drawn.rate == rate)
-            cut(triangles, drawn.triangles, rate, box, most, finds_far);
+            cut(triangles, drawn.triangles, rate, box, max_triangles, finds_far);
         else
-            cut(triangles, sample_triangles(soup_, triangles, rate, progress_), rate, box, most,
-                finds_far);
+            cut(triangles, sample_triangles(soup_, triangles, rate, progress_), rate, box,
+                max_triangles, finds_far);
     }
 
     /// Appends the tree over `box` by all of its triangles.
-    void cut_by_all(std::span<const TriangleId> triangles, const Box& box, uint32_t most) {
-        cut(triangles, triangles, /* rate= */ 1, box, most, /* finds_far= */ false);
+    void cut_by_all(std::span<const TriangleId> triangles, const Box& box, uint32_t max_triangles) {
+        cut(triangles, triangles, /* rate= */ 1, box, max_triangles, /* finds_far= */ false);
     }
 
     /// Appends a node for a cell, with a leaf for each list; no list stands for an empty cell.
@@ -204,20 +205,21 @@ private:
     }
 
     void cut(std::span<const TriangleId> triangles, std::span<const TriangleId> sample,
-             uint32_t rate, const Box& box, uint32_t most, bool finds_far) {
-        const KdTree tree = cut_sample(soup_, sample, rate, box, level1_.padding, most, progress_);
+             uint32_t rate, const Box& box, uint32_t max_triangles, bool finds_far) {
+        const KdTree tree =
+            cut_sample(soup_, sample, rate, box, level1_.padding, max_triangles, progress_);
         const std::vector<Cell> cells = cells_of(tree.nodes, box, level1_.padding);
         auto lists = members(tree.nodes, cells, triangles, finds_far ? kFarCells : kNone);
         const uint64_t far = lists.back().size();
-        if (far_leaf_pays(far, triangles.size(), most))
+        if (far_leaf_pays(far, triangles.size(), max_triangles))
             add_far_leaf(std::move(lists.back()));
         else if (far > 0)
             lists = members(tree.nodes, cells, triangles, kNone);
         fill(tree.nodes, box, lists, [&](const Cell& cell, std::span<const TriangleId> inside) {
-            if (inside.size() > most && rate > 1)
-                cut_by_all(inside, cell.box, most);
+            if (inside.size() > max_triangles && rate > 1)
+                cut_by_all(inside, cell.box, max_triangles);
             else
-                add_leaves(cell.padded, in_parts(inside, most));
+                add_leaves(cell.padded, in_parts(inside, max_triangles));
         });
     }
 
@@ -313,9 +315,9 @@ KdTree cut_sample(const Soup& soup, std::span<const TriangleId> sample, uint32_t
     // Twice, because a triangle that only touches the padded cell is in it.
     options.padding = 2 * padding;
     // The number of a leaf's triangles in the sample deviates by about its root; this leaves room.
-    const double most = double(max_leaf_triangles);
+    const double max_triangles = double(max_leaf_triangles);
     options.max_leaf_triangles =
-        rate == 1 ? max_leaf_triangles : uint32_t(most - std::sqrt(most * rate));
+        rate == 1 ? max_leaf_triangles : uint32_t(max_triangles - std::sqrt(max_triangles * rate));
     options.stands_for = rate;
     options.progress = progress;
     KdTree tree = build_kd_tree(soup, sample, box, options);
@@ -426,15 +428,15 @@ uint32_t leaf_at(const Level1& level1, const dvec3& point, TriangleId id) {
     return cell.count() > 0 ? cell.first() : kNone;
 }
 
-Level1 cut_again(const Soup& soup, Level1 level1, std::span<const uint32_t> most,
+Level1 cut_again(const Soup& soup, Level1 level1, std::span<const uint32_t> max_triangles,
                  std::vector<uint32_t>& was, BuildProgress* progress) {
-    assert(most.size() == level1.leaves.size());
+    assert(max_triangles.size() == level1.leaves.size());
     was.clear();
     std::vector<uint32_t> of; // per new leaf: the old one whose frame it keeps; kNone: its own
     Partitioner partitioner(soup, level1.bounds, progress);
     for (uint32_t i = 0; i < level1.far_leaves; ++i) {
         std::vector<std::vector<TriangleId>> lists;
-        halve(soup, level1.leaves[i].triangles, most[i], lists);
+        halve(soup, level1.leaves[i].triangles, max_triangles[i], lists);
         for (std::vector<TriangleId>& list : lists)
             partitioner.add_far_leaf(std::move(list));
         was.resize(partitioner.leaves(), lists.size() == 1 ? i : kNone);
@@ -446,7 +448,7 @@ Level1 cut_again(const Soup& soup, Level1 level1, std::span<const uint32_t> most
         uint32_t limit = kNone; // an empty cell stays as it is
         std::vector<std::vector<TriangleId>> lists;
         for (uint32_t i = first; i < first + node.count(); ++i) {
-            limit = std::min(limit, most[i]);
+            limit = std::min(limit, max_triangles[i]);
             lists.push_back(std::move(level1.leaves[i].triangles));
             share_frame = share_frame && level1.leaves[i].frame == level1.leaves[first].frame;
         }

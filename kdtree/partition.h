@@ -147,10 +147,10 @@ Level1 cut_cell(const Soup& soup, std::span<const TriangleId> triangles, const B
 /// nodes.
 uint32_t leaf_at(const Level1& level1, const dvec3& point, TriangleId id);
 
-/// Returns the same level 1 with some leaves cut into smaller ones. most: per leaf the max number
-/// of triangles in each of its parts, or kNone, which leaves it as it is. was: receives for each
-/// new leaf the number of the old leaf that it was, or kNone for parts.
-Level1 cut_again(const Soup& soup, Level1 level1, std::span<const uint32_t> most,
+/// Returns the same level 1 with some leaves cut into smaller ones. max_triangles: per leaf the max
+/// number of triangles in each of its parts, or kNone, which leaves it as it is. was: receives for
+/// each new leaf the number of the old leaf that it was, or kNone for parts.
+Level1 cut_again(const Soup& soup, Level1 level1, std::span<const uint32_t> max_triangles,
                  std::vector<uint32_t>& was, BuildProgress* progress = nullptr);
 
 } // namespace ovc

@@ -12,10 +12,10 @@
 namespace ovc {
 namespace {
 
-Level1 cut(const Soup& soup, uint32_t most) {
+Level1 cut(const Soup& soup, uint32_t max_triangles) {
     Box bounds;
     const auto ids = hittable_triangles(soup, nullptr, &bounds);
-    return partition(soup, ids, bounds, most);
+    return partition(soup, ids, bounds, max_triangles);
 }
 
 /// Traces leaf by leaf and tests all triangles of each; after the first hit only the leaves of its
@@ -43,11 +43,11 @@ Hit trace(const Level1& level1, const Soup& soup, const Ray& ray) {
 
 TEST(Partition, LeavesKeepToTheCountAndHoldEveryTriangle) {
     for (const auto& [name, soup] : test::unpleasant_soups()) {
-        for (const uint32_t most : {1000u, 50u, 7u}) {
-            const Level1 level1 = cut(soup, most);
+        for (const uint32_t max_triangles : {1000u, 50u, 7u}) {
+            const Level1 level1 = cut(soup, max_triangles);
             std::set<TriangleId> all;
             for (const Leaf& leaf : level1.leaves) {
-                EXPECT_LE(leaf.triangles.size(), most) << name;
+                EXPECT_LE(leaf.triangles.size(), max_triangles) << name;
                 EXPECT_TRUE(std::is_sorted(leaf.triangles.begin(), leaf.triangles.end()));
                 all.insert(leaf.triangles.begin(), leaf.triangles.end());
                 const dvec3 corner = leaf.frame.to_local(leaf.box.hi);
@@ -62,15 +62,15 @@ TEST(Partition, WalkingLeavesFindsWhatBruteForceFinds) {
     for (const auto& [name, soup] : test::unpleasant_soups()) {
         const auto ids = hittable_triangles(soup, nullptr, nullptr);
         const auto rays = test::unpleasant_rays(soup, 21, 600);
-        for (const uint32_t most : {100000u, 300u, 40u}) {
-            const Level1 level1 = cut(soup, most);
+        for (const uint32_t max_triangles : {100000u, 300u, 40u}) {
+            const Level1 level1 = cut(soup, max_triangles);
             for (size_t i = 0; i < rays.size(); ++i) {
                 if (!rays[i].valid() || !can_walk(level1, PreparedRay(rays[i])))
                     continue;
                 const Hit expected = test::brute_force(soup, ids, rays[i]);
                 const Hit found = trace(level1, soup, rays[i]);
                 ASSERT_TRUE(test::same(expected, found))
-                    << name << " leaves of " << most << " ray " << i << ": "
+                    << name << " leaves of " << max_triangles << " ray " << i << ": "
                     << test::describe(expected) << " but found " << test::describe(found);
             }
         }
@@ -85,10 +85,10 @@ TEST(Partition, RefusesToWalkWhereDoublesLoseTheLeaf) {
     EXPECT_FALSE(can_walk(level1, PreparedRay(Ray{{0, 0, 0}, 0, {1, 1e-310, 0}})));
 }
 
-Level1 cut_with_far_leaves(const Soup& soup, uint32_t most) {
+Level1 cut_with_far_leaves(const Soup& soup, uint32_t max_triangles) {
     Box bounds;
     const auto ids = hittable_triangles(soup, nullptr, &bounds);
-    return partition(soup, ids, bounds, most, nullptr, {}, {.allowed = true});
+    return partition(soup, ids, bounds, max_triangles, nullptr, {}, {.allowed = true});
 }
 
 /// All planes through a heap of triangles that is smaller than the padding of cells would leave all
@@ -131,15 +131,15 @@ TEST(FarLeaf, IsNoneWhereManyTrianglesReachFar) {
 TEST(FarLeaf, IsCutAgainLikeTheOthers) {
     const Soup soup = test::grid_on_floor(24);
     const Level1 before = cut_with_far_leaves(soup, 60);
-    std::vector<uint32_t> most(before.leaves.size(), kNone), was;
-    const Level1 same = cut_again(soup, before, most, was);
+    std::vector<uint32_t> max_triangles(before.leaves.size(), kNone), was;
+    const Level1 same = cut_again(soup, before, max_triangles, was);
     EXPECT_EQ(same.far_leaves, 1u);
     EXPECT_EQ(same.leaves.size(), before.leaves.size());
     EXPECT_EQ(was[0], 0u);
 
-    most[0] = 1;
-    most.back() = 7;
-    const Level1 smaller = cut_again(soup, before, most, was);
+    max_triangles[0] = 1;
+    max_triangles.back() = 7;
+    const Level1 smaller = cut_again(soup, before, max_triangles, was);
     ASSERT_EQ(smaller.far_leaves, 2u);
     for (uint32_t i = 0; i < 2; ++i) {
         EXPECT_EQ(smaller.leaves[i].triangles.size(), 1u);

@@ -59,14 +59,14 @@ TEST(Sample, LeavesKeepToTheCountAndHoldEveryTriangleThatTouchesThem) {
     const Soup soup = large_soup();
     Box bounds;
     const auto ids = hittable_triangles(soup, nullptr, &bounds);
-    for (const uint32_t most : {100'000u, 20'000u, 2'000u, 300u}) {
-        const Level1 level1 = partition(soup, ids, bounds, most);
+    for (const uint32_t max_triangles : {100'000u, 20'000u, 2'000u, 300u}) {
+        const Level1 level1 = partition(soup, ids, bounds, max_triangles);
         uint64_t references = 0;
         for (const Leaf& leaf : level1.leaves) {
-            EXPECT_LE(leaf.triangles.size(), most);
+            EXPECT_LE(leaf.triangles.size(), max_triangles);
             references += leaf.triangles.size();
         }
-        EXPECT_LT(double(references), 1.5 * double(ids.size())) << most;
+        EXPECT_LT(double(references), 1.5 * double(ids.size())) << max_triangles;
         // At each of its corners, a triangle is in the leaf around that corner.
         std::vector<std::set<TriangleId>> inside;
         for (const Leaf& leaf : level1.leaves)
@@ -76,7 +76,7 @@ TEST(Sample, LeavesKeepToTheCountAndHoldEveryTriangleThatTouchesThem) {
                 bool found = false;
                 for (size_t l = 0; l < inside.size() && !found; ++l)
                     found = level1.leaves[l].cell.contains(corner) && inside[l].count(ids[i]);
-                EXPECT_TRUE(found) << "triangle " << i << ", leaves of " << most;
+                EXPECT_TRUE(found) << "triangle " << i << ", leaves of " << max_triangles;
             }
     }
 }
@@ -108,10 +108,10 @@ TEST(Sample, CutsAgainOnlyTheLeavesItIsTold) {
     const auto ids = hittable_triangles(soup, nullptr, &bounds);
     const Level1 before = partition(soup, ids, bounds, 20'000);
     ASSERT_GE(before.leaves.size(), 4u);
-    std::vector<uint32_t> most(before.leaves.size(), kNone), was;
-    most[1] = 1000;
-    most[3] = 5000;
-    const Level1 after = cut_again(soup, before, most, was);
+    std::vector<uint32_t> max_triangles(before.leaves.size(), kNone), was;
+    max_triangles[1] = 1000;
+    max_triangles[3] = 5000;
+    const Level1 after = cut_again(soup, before, max_triangles, was);
     ASSERT_EQ(was.size(), after.leaves.size());
     EXPECT_EQ(std::count(was.begin(), was.end(), kNone) + ptrdiff_t(before.leaves.size()) - 2,
               ptrdiff_t(was.size()));

@@ -51,12 +51,12 @@ struct RaysOf {
 
 template <class V>
 OVC_INLINE LanesAhead look_ahead(const LanesScene& scene, const RaysOf<V>& rays) {
-    constexpr double kMost = std::numeric_limits<double>::max();
+    constexpr double kMax = std::numeric_limits<double>::max();
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     MaskOf<V> valid = are_finite(rays.t_min) & (rays.t_min <= rays.t_max) &
                       (rays.longest() >= all_lanes<V>(1e-300));
     MaskOf<V> walks = ~MaskOf<V>{}, outside{};
-    V reach{}, enter = rays.from, exit = smaller(all_lanes<V>(kMost), rays.t_max);
+    V reach{}, enter = rays.from, exit = smaller(all_lanes<V>(kMax), rays.t_max);
     for (int axis = 0; axis < 3; ++axis) {
         const V org = rays.org[axis], dir = rays.dir[axis], inv_dir = 1.0 / dir;
         const MaskOf<V> is_flat = dir == V{};

@@ -73,12 +73,12 @@ std::string escaped_byte(char byte) {
 
 } // namespace
 
-std::string printable(std::string_view text, size_t most) {
+std::string printable(std::string_view text, size_t max_bytes) {
     std::string shown;
     for (size_t i = 0; i < text.size();) {
         const Character c = first_of(text.substr(i));
         const size_t bytes = c.bytes > 0 ? c.bytes : 1;
-        if (i + bytes > most)
+        if (i + bytes > max_bytes)
             return shown + "…";
         if (c.bytes == 0)
             shown += escaped_byte(text[i]);

@@ -13,7 +13,8 @@ namespace ovc {
 /// that are no UTF-8 become \x and their value. Doing it twice changes nothing more.
 std::string printable(std::string_view text);
 
-/// Returns the same for up to `most` bytes of the text, in whole characters, then "…" for more.
-std::string printable(std::string_view text, size_t most);
+/// Returns the same for up to `max_bytes` bytes of the text, in whole characters, then "…" for
+/// more.
+std::string printable(std::string_view text, size_t max_bytes);
 
 } // namespace ovc

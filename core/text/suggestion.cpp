@@ -28,10 +28,10 @@ static size_t edit_distance(std::string_view a, std::string_view b) {
 std::string_view nearest(std::string_view word, std::span<const std::string_view> candidates) {
     std::string_view best;
     // A third of the letters may be wrong; beyond that it is another word.
-    size_t least = std::max<size_t>(1, word.size() / 3) + 1;
+    size_t smallest = std::max<size_t>(1, word.size() / 3) + 1;
     for (const std::string_view candidate : candidates)
-        if (const size_t distance = edit_distance(word, candidate); distance < least) {
-            least = distance;
+        if (const size_t distance = edit_distance(word, candidate); distance < smallest) {
+            smallest = distance;
             best = candidate;
         }
     return best;

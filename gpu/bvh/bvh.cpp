@@ -295,13 +295,13 @@ std::vector<BvhNode> build_split_bvh(std::span<const Boxf> boxes,
     std::vector<BvhNode> nodes;
     if (boxes.empty())
         return nodes;
-    const size_t most = boxes.size() + max_added;
-    std::vector<Item> items(most);
+    const size_t max_boxes = boxes.size() + max_added;
+    std::vector<Item> items(max_boxes);
     for (size_t i = 0; i < boxes.size(); ++i)
         items[i] = Item::of(boxes[i], uint32_t(i));
-    nodes.resize(2 * most - 1);
+    nodes.resize(2 * max_boxes - 1);
     Builder builder(items, nodes, pairs, progress);
-    in_forks([&](const Fork& fork) { builder.build(0, {0, boxes.size(), most}, 0, fork); });
+    in_forks([&](const Fork& fork) { builder.build(0, {0, boxes.size(), max_boxes}, 0, fork); });
     return nodes;
 }
 

@@ -15,17 +15,17 @@ Collapse::Collapse(const std::vector<BvhNode>& nodes, BuildProgress* progress)
     in_forks([&](const Fork& fork) { weigh(root(), fork); });
 }
 
-/// Returns the cheapest way to put the boxes of an inner node under at most `most` nodes, 2 to 4,
-/// other than itself.
-Collapse::Shares Collapse::shares(uint32_t node, int most) const {
-    assert(most >= 2 && most <= 4 && !nodes_[node].is_leaf());
+/// Returns the cheapest way to put the boxes of an inner node under at most `max_children` nodes, 2
+/// to 4, other than itself.
+Collapse::Shares Collapse::shares(uint32_t node, int max_children) const {
+    assert(max_children >= 2 && max_children <= 4 && !nodes_[node].is_leaf());
     const Costs& left = costs_[node + 1];
     const Costs& right = costs_[nodes_[node].right];
-    Shares best{1, most - 1, left[0] + right[size_t(most - 2)]};
-    for (int i = 2; i < most; ++i) {
-        const float cost = left[size_t(i - 1)] + right[size_t(most - i - 1)];
+    Shares best{1, max_children - 1, left[0] + right[size_t(max_children - 2)]};
+    for (int i = 2; i < max_children; ++i) {
+        const float cost = left[size_t(i - 1)] + right[size_t(max_children - i - 1)];
         if (cost < best.cost)
-            best = {i, most - i, cost};
+            best = {i, max_children - i, cost};
     }
     return best;
 }
@@ -49,9 +49,9 @@ void Collapse::weigh(Subtree of, const Fork& fork) {
     costs[2] = std::min(costs[1], shares(of.node, 3).cost);
 }
 
-void Collapse::collect(Subtree of, int most, Children& children) const {
-    if (!nodes_[of.node].is_leaf() && most > 1) {
-        const Shares best = shares(of.node, most);
+void Collapse::collect(Subtree of, int max_children, Children& children) const {
+    if (!nodes_[of.node].is_leaf() && max_children > 1) {
+        const Shares best = shares(of.node, max_children);
         if (best.cost <= costs_[of.node][0]) {
             collect(left(of), best.left, children);
             collect(right(of), best.right, children);

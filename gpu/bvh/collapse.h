@@ -52,9 +52,9 @@ private:
 
     Subtree left(Subtree of) const { return {of.node + 1, nodes_[of.node].right}; }
     Subtree right(Subtree of) const { return {nodes_[of.node].right, of.end}; }
-    Shares shares(uint32_t node, int most) const;
+    Shares shares(uint32_t node, int max_children) const;
     void weigh(Subtree of, const Fork& fork);
-    void collect(Subtree of, int most, Children& children) const;
+    void collect(Subtree of, int max_children, Children& children) const;
 
     const std::vector<BvhNode>& nodes_;
     std::vector<Costs> costs_;

@@ -21,18 +21,19 @@ std::vector<Boxf> strewn(uint64_t seed, size_t count) {
     return boxes;
 }
 
-/// Returns the min sum of areas over all ways to put the boxes below `node` under up to `most`
-/// nodes.
-double least(const std::vector<BvhNode>& nodes, uint32_t node, int most) {
+/// Returns the min sum of areas over all ways to put the boxes below `node` under up to
+/// `max_children` nodes.
+double min_cost(const std::vector<BvhNode>& nodes, uint32_t node, int max_children) {
     const BvhNode& n = nodes[node];
     if (n.is_leaf())
         return 0;
     double best = std::numeric_limits<double>::infinity();
-    for (int i = 1; i < most; ++i)
-        best = std::min(best, least(nodes, node + 1, i) + least(nodes, n.right, most - i));
+    for (int i = 1; i < max_children; ++i)
+        best = std::min(best,
+                        min_cost(nodes, node + 1, i) + min_cost(nodes, n.right, max_children - i));
     for (int i = 1; i < 4; ++i)
-        best = std::min(best, double(n.box.half_area()) + least(nodes, node + 1, i) +
-                                  least(nodes, n.right, 4 - i));
+        best = std::min(best, double(n.box.half_area()) + min_cost(nodes, node + 1, i) +
+                                  min_cost(nodes, n.right, 4 - i));
     return best;
 }
 
@@ -58,7 +59,7 @@ TEST(Collapse, IsTheCheapestOfAllAndLosesNoBox) {
         const std::vector<BvhNode> nodes = build_bvh(boxes);
         const Collapse collapse(nodes, nullptr);
         std::vector<int> seen(boxes.size(), 0);
-        const double expected = least(nodes, 0, 1);
+        const double expected = min_cost(nodes, 0, 1);
         EXPECT_NEAR(cost(nodes, collapse, collapse.root(), seen), expected, 1e-5 * expected);
         EXPECT_EQ(std::count(seen.begin(), seen.end(), 1), ptrdiff_t(boxes.size()));
     }

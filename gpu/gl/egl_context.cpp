@@ -135,11 +135,11 @@ GLint limit_of(GLenum limit) {
 
 /// Returns how many buffers of the pool both kernels can read in a way that has these limits.
 uint32_t max_pool_buffers(const std::array<GLenum, 3>& limits) {
-    GLint least = std::numeric_limits<GLint>::max();
+    GLint smallest = std::numeric_limits<GLint>::max();
     for (const GLenum limit : limits)
-        least = std::min(least, limit_of(limit));
+        smallest = std::min(smallest, limit_of(limit));
     constexpr GLint kMaxUnitNumberBuffers = int(1u << (31 - OVC_MAX_BUFFER_BITS));
-    return uint32_t(std::clamp(least - OVC_BINDING_POOL, 0, kMaxUnitNumberBuffers));
+    return uint32_t(std::clamp(smallest - OVC_BINDING_POOL, 0, kMaxUnitNumberBuffers));
 }
 
 /// Fills in how many buffers of the pool a kernel can read, for each of TexelReads.

@@ -244,7 +244,7 @@ void LateGl::add_shader(std::function<void()> run) {
         --shaders_;
     };
     list_.push_back({run_and_finish});
-    most_shaders_ = std::max(most_shaders_, ++shaders_);
+    max_shaders_ = std::max(max_shaders_, ++shaders_);
     if (first_shader_ == list_.end())
         first_shader_ = std::prev(list_.end());
 }

@@ -34,7 +34,7 @@ public:
     LateGl(const LateGl&) = delete;
 
     /// Returns how many runs of a shader were waiting at most.
-    size_t most_shaders() const { return most_shaders_; }
+    size_t max_shaders() const { return max_shaders_; }
 
 private:
     struct Hooks; // the functions that take the place of GL's
@@ -61,7 +61,7 @@ private:
     std::mt19937 random_;
     std::list<Command> list_; // the next to be carried out comes first
     size_t shaders_ = 0;      // in the list
-    size_t most_shaders_ = 0;
+    size_t max_shaders_ = 0;
     Mark last_mark_ = 0;
     std::set<Mark> pending_marks_;
     GLuint query_ = 0;                    // that has begun

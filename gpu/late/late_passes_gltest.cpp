@@ -111,7 +111,7 @@ protected:
             device.passes_in_flight = 2;
             LateGl driver(seed, lie);
             auto answers = traced(*make_tracer(state), 2, moves);
-            EXPECT_GE(driver.most_shaders(), 2u) << "two passes were under way";
+            EXPECT_GE(driver.max_shaders(), 2u) << "two passes were under way";
             return answers;
         });
     }

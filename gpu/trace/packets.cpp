@@ -78,9 +78,9 @@ std::vector<uint32_t> apart(std::span<const Sent> rays) {
 }
 
 template <class Sent>
-std::optional<std::vector<Parted>> part(PagedVector<Sent>& slots, size_t rays, size_t most) {
+std::optional<std::vector<Parted>> part(PagedVector<Sent>& slots, size_t rays, size_t max_slots) {
     static_assert(kPacketRays == 2);
-    assert(rays <= slots.size() && slots.size() <= most);
+    assert(rays <= slots.size() && slots.size() <= max_slots);
     const std::vector<uint32_t> numbers = apart(std::span<const Sent>(slots).first(rays));
     std::vector<Parted> parted;
     size_t end = rays + rays % 2;
@@ -89,7 +89,7 @@ std::optional<std::vector<Parted>> part(PagedVector<Sent>& slots, size_t rays, s
         const bool second =
             end % 2 == 1 && go_alike(local(slots[parted.back().ray]), local(slots[number]));
         const size_t slot = second ? end : end + end % 2;
-        if (slot >= most)
+        if (slot >= max_slots)
             break;
         parted.push_back({number, uint32_t(slot)});
         end = slot + 1;
@@ -125,12 +125,12 @@ bool coherent(std::span<const LocalRay> rays) {
 }
 
 std::optional<std::vector<Parted>> part_packets(PagedVector<LocalRay>& slots, size_t rays,
-                                                size_t most) {
-    return part(slots, rays, most);
+                                                size_t max_slots) {
+    return part(slots, rays, max_slots);
 }
 std::optional<std::vector<Parted>> part_packets(PagedVector<ResumedRay>& slots, size_t rays,
-                                                size_t most) {
-    return part(slots, rays, most);
+                                                size_t max_slots) {
+    return part(slots, rays, max_slots);
 }
 
 } // namespace ovc

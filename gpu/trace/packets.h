@@ -30,12 +30,12 @@ struct Parted {
 
 /// Moves the second ray of a packet behind the first `rays` of `slots` if its two rays go into
 /// different octants, or farthest along different axes; OVC_NO_RAY takes its place. Grows `slots`
-/// to as many whole blocks as that takes, at most `most` slots. A few rays that find no room may
-/// stay; the kernel then leaves them undecided. Returns the rays that were moved, or nothing, with
-/// none moved, if more than a few would stay.
+/// to as many whole blocks as that takes, at most `max_slots` slots. A few rays that find no room
+/// may stay; the kernel then leaves them undecided. Returns the rays that were moved, or nothing,
+/// with none moved, if more than a few would stay.
 std::optional<std::vector<Parted>> part_packets(PagedVector<LocalRay>& slots, size_t rays,
-                                                size_t most);
+                                                size_t max_slots);
 std::optional<std::vector<Parted>> part_packets(PagedVector<ResumedRay>& slots, size_t rays,
-                                                size_t most);
+                                                size_t max_slots);
 
 } // namespace ovc

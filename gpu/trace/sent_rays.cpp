@@ -192,7 +192,7 @@ bool SentRays::are_coherent() const {
     return coherent(size_, [&](size_t i) { return local_ray_of(i); });
 }
 
-bool SentRays::part(size_t most) {
+bool SentRays::part(size_t max_slots) {
     assert(parted_.empty());
     return std::visit(
         [&](auto& all) {
@@ -200,7 +200,7 @@ bool SentRays::part(size_t most) {
                 return false;
             } else {
                 all.resize(whole_blocks(size_));
-                auto parted = part_packets(all, size_, most);
+                auto parted = part_packets(all, size_, max_slots);
                 if (parted)
                     parted_ = std::move(*parted);
                 return parted.has_value();

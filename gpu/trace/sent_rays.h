@@ -91,9 +91,9 @@ public:
     void set_all_any_hit(bool all) { all_any_hit_ = all; }
     /// Whether rays suit packets (gpu/trace/packets.h).
     bool are_coherent() const;
-    /// Parts packets, which are not parted yet; there are at most `most` slots. Returns whether
-    /// packets are of use.
-    bool part(size_t most);
+    /// Parts packets, which are not parted yet; there are at most `max_slots` slots. Returns
+    /// whether packets are of use.
+    bool part(size_t max_slots);
     /// Takes part() back.
     void unpart();
     std::span<const Parted> parted() const { return parted_; }

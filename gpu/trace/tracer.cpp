@@ -91,11 +91,11 @@ Result<MemoryPlan> plan_memory(uint64_t budget_bytes, const DeviceInfo& device,
     // An eighth for rays: batches of ten thousand and more already run at full speed, and pages
     // want the rest. The share is cut off whether whole blocks fill it or not, so that a larger
     // budget never has a smaller pool.
-    MemoryPlan most = plan;
-    most.batch_rays *= uint32_t(std::min<uint64_t>(
+    MemoryPlan max_plan = plan;
+    max_plan.batch_rays *= uint32_t(std::min<uint64_t>(
         {device.is_software ? kMaxBlocksInSoftware : kMaxBlocks / plan.passes,
          device.max_texture_size / OVC_TILE, std::max<uint64_t>(shown_blocks, 1)}));
-    const uint64_t ray_share = std::clamp(budget_bytes / 8, plan.ray_bytes(), most.ray_bytes());
+    const uint64_t ray_share = std::clamp(budget_bytes / 8, plan.ray_bytes(), max_plan.ray_bytes());
     plan.batch_rays *= uint32_t(ray_share / plan.ray_bytes());
     while (plan.ray_bytes() > ray_share)
         plan.batch_rays -= kBlockRays;

@@ -27,9 +27,9 @@ bool is(const FloatPair& pair, double exact) {
 }
 /// Whether the pair is off by at most so many u^2 of the exact number, and its parts do not
 /// overlap.
-bool is_near(const FloatPair& pair, double exact, double most) {
+bool is_near(const FloatPair& pair, double exact, double max_error) {
     return pair.hi == float(pair.value()) &&
-           std::abs(pair.value() - exact) <= (most * 0x1p-48 + 0x1p-52) * std::abs(exact);
+           std::abs(pair.value() - exact) <= (max_error * 0x1p-48 + 0x1p-52) * std::abs(exact);
 }
 
 /// Sums and products of two floats are exact in doubles here, those of pairs nearly.

@@ -12,11 +12,11 @@
 namespace ovc {
 
 /// Throws a Failure for a struct_size that is neither that of this header nor of an earlier one.
-/// least: the size of T in the first header that had it.
+/// min_size: the size of T in the first header that had it.
 template <class T>
-void check_size(const char* name, size_t size, size_t least = sizeof(T)) {
-    assert(least <= sizeof(T));
-    if (size < least || size > sizeof(T))
+void check_size(const char* name, size_t size, size_t min_size = sizeof(T)) {
+    assert(min_size <= sizeof(T));
+    if (size < min_size || size > sizeof(T))
         throw Failure{OVC_ERROR_INVALID_ARGUMENT,
                       format_text("{}.struct_size is {}, expected sizeof({}) = {}", name, size,
                                   name, sizeof(T))};
@@ -24,8 +24,8 @@ void check_size(const char* name, size_t size, size_t least = sizeof(T)) {
 
 /// Returns the struct, with zeros for fields that an earlier header lacked. Throws as check_size().
 template <class T>
-T whole(const char* name, const T* given, size_t least = sizeof(T)) {
-    check_size<T>(name, given->struct_size, least);
+T whole(const char* name, const T* given, size_t min_size = sizeof(T)) {
+    check_size<T>(name, given->struct_size, min_size);
     T full{};
     std::memcpy(&full, given, given->struct_size);
     full.struct_size = sizeof(T);

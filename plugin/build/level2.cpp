@@ -33,8 +33,8 @@ bool LeafLimits::fits(uint64_t all, double bytes_per_triangle) const {
 }
 
 uint32_t LeafLimits::triangles_at(double bytes_per_triangle) const {
-    const uint64_t most = triangles_in(page_bytes, bytes_per_triangle);
-    return uint32_t(std::clamp<uint64_t>(std::min(most, triangles), 1, kNone - 1));
+    const uint64_t max_triangles = triangles_in(page_bytes, bytes_per_triangle);
+    return uint32_t(std::clamp<uint64_t>(std::min(max_triangles, triangles), 1, kNone - 1));
 }
 
 uint32_t LeafLimits::triangles_again(uint64_t triangles_before, uint64_t bytes_before) const {
@@ -182,10 +182,10 @@ private:
     /// Returns false where there are no such leaves.
     Result<bool> cut_too_large() {
         const Stopwatch watch;
-        std::vector<uint32_t> most(scene_.pages.size(), kNone);
-        const uint64_t max_bytes = limits_.page_bytes_of(most.size());
+        std::vector<uint32_t> max_triangles(scene_.pages.size(), kNone);
+        const uint64_t max_bytes = limits_.page_bytes_of(max_triangles.size());
         bool any = false;
-        for (size_t i = 0; i < most.size(); ++i) {
+        for (size_t i = 0; i < max_triangles.size(); ++i) {
             const uint64_t bytes = scene_.pages[i].bytes();
             const size_t triangles = scene_.level1.leaves[i].triangles.size();
             if (bytes <= max_bytes)
@@ -193,13 +193,13 @@ private:
             if (triangles == 1)
                 return over_budget(
                     format_text("a page of one triangle does not fit into {} bytes", max_bytes));
-            most[i] = limits_.triangles_again(triangles, bytes);
+            max_triangles[i] = limits_.triangles_again(triangles, bytes);
             any = true;
         }
         if (!any)
             return false;
         std::vector<uint32_t> was;
-        scene_.level1 = cut_again(soup_, std::move(scene_.level1), most, was, progress_);
+        scene_.level1 = cut_again(soup_, std::move(scene_.level1), max_triangles, was, progress_);
         assert(was.size() == scene_.level1.leaves.size());
         std::vector<Page> pages(was.size());
         for (size_t i = 0; i < was.size(); ++i)

@@ -28,13 +28,13 @@ bool is_sound(const Box& box) {
 
 /// Whether a walk from the root ends, stays within the nodes and names leaves that exist.
 bool is_walkable(std::span<const KdNode> nodes, size_t leaves) {
-    constexpr uint32_t kDeepest = 120; // what kdtree/walk.h has a stack for, and some
+    constexpr uint32_t kMaxWalkDepth = 120; // what kdtree/walk.h has a stack for, and some
     std::vector<uint8_t> depth(nodes.size(), 0);
     if (!nodes.empty())
         depth[0] = 1;
     for (size_t i = 0; i < nodes.size(); ++i) {
         const KdNode& node = nodes[i];
-        if (depth[i] == 0 || depth[i] > kDeepest)
+        if (depth[i] == 0 || depth[i] > kMaxWalkDepth)
             return false;
         if (node.is_leaf()) {
             if (uint64_t(node.first()) + node.count() > leaves)

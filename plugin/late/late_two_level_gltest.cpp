@@ -49,7 +49,7 @@ TEST_P(LateTwoLevelGl, AnswersAsBruteForceDoes) {
         test::expect_answers(*structure, rays, expected);
         EXPECT_EQ(structure->report().queues > 0, budget < 1 << 20) << "pages move";
     }
-    EXPECT_GE(driver->most_shaders(), 2u);
+    EXPECT_GE(driver->max_shaders(), 2u);
 }
 
 struct StopsSoon final : TraceWatch {

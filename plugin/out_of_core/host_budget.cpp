@@ -21,8 +21,8 @@ constexpr double kCopies = 1.4, kFull = 0.5;
 } // namespace
 
 uint32_t HostBudget::sample_rate(uint64_t triangles) const {
-    const uint64_t most = std::max<uint64_t>(bytes / 4 / kBytesOfSample, 1);
-    return uint32_t(std::bit_ceil((triangles + most - 1) / most));
+    const uint64_t max_sample = std::max<uint64_t>(bytes / 4 / kBytesOfSample, 1);
+    return uint32_t(std::bit_ceil((triangles + max_sample - 1) / max_sample));
 }
 
 uint64_t HostBudget::buffer_bytes(size_t cells) const {

@@ -168,8 +168,8 @@ double PageRates::with_cuts(double triangles, double copies) const {
     const double levels = std::log2(triangles / kInASmallCube);
     const double way = std::clamp(levels / std::log2(kInALargeCube / kInASmallCube), 0.0, 1.0);
     const double cut = cut_in_small_ + way * (cut_in_large_ - cut_in_small_);
-    const double most = kCutOfAllowed * LoosePairs{true, copies}.max_cut();
-    return (1 + std::min(cut, most)) / (1 + cut_in_small_);
+    const double max_cut = kCutOfAllowed * LoosePairs{true, copies}.max_cut();
+    return (1 + std::min(cut, max_cut)) / (1 + cut_in_small_);
 }
 
 } // namespace ovc

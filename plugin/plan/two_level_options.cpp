@@ -51,18 +51,19 @@ SmallestCut smallest_cut(const Soup& soup, const Placed& placed, const TwoLevelO
     const uint64_t leaf_bytes = kMaxBytesPerPart + active_bytes;
     const double balanced =
         std::sqrt(double(triangles) * double(leaf_bytes) / double(kMaxUncutBytesPerTriangle));
-    uint64_t most =
+    uint64_t max_triangles =
         std::clamp<uint64_t>(uint64_t(balanced), 1, std::min(triangles, uint64_t(kNone - 1)));
     if (options.leaf_triangles)
-        most = std::min(most, options.leaf_triangles);
+        max_triangles = std::min(max_triangles, options.leaf_triangles);
     // Each shared mesh may have a leaf that is not full, and is one part with a portal an instance.
-    const uint64_t leaves = (triangles + most - 1) / most + placed.shared.size();
+    const uint64_t leaves = (triangles + max_triangles - 1) / max_triangles + placed.shared.size();
     uint64_t portals = 0;
     for (const Placed::Shared& meshes : placed.shared)
         portals += meshes.places.size();
     const uint64_t table =
         first_bytes + leaves * leaf_bytes + portals * (kPortalBytes + 2 * OVC_UNIT_BYTES);
-    return {uint32_t(most), table + kPageStart + most * kMaxUncutBytesPerTriangle};
+    return {uint32_t(max_triangles),
+            table + kPageStart + max_triangles * kMaxUncutBytesPerTriangle};
 }
 
 uint64_t smallest_budget(uint64_t pool_bytes, const DeviceInfo& device) {
@@ -113,10 +114,10 @@ LeafLimits limits_of(const TwoLevelOptions& options, const MemoryPlan& here, uin
     const uint64_t page_bytes = std::min(share_of_page(plan, unique), plan.buffer_bytes);
     if (options.leaf_triangles)
         return {options.leaf_triangles, page_bytes};
-    double most = double(triangles) / double(kDefaultLeaves);
+    double max_triangles = double(triangles) / double(kDefaultLeaves);
     if (options.leaves)
-        most = double(triangles) / (options.leaves == 1 ? 1 : kFull * options.leaves);
-    LeafLimits limits{std::max<uint64_t>(uint64_t(std::ceil(most)), 1), page_bytes};
+        max_triangles = double(triangles) / (options.leaves == 1 ? 1 : kFull * options.leaves);
+    LeafLimits limits{std::max<uint64_t>(uint64_t(std::ceil(max_triangles)), 1), page_bytes};
     if (!options.leaves) {
         limits.page_bytes = std::min(
             page_bytes, std::max<uint64_t>(plan.pool_bytes / kPagesByDefault, kWorthMoving));

@@ -44,8 +44,8 @@ Result<Done> Comparison::build_system(const Hittable& hittable, BuildProgress* p
     scene_.level1.bounds = bounds;
     scene_.level1.leaves = {whole_leaf(scene_.soup, triangles, bounds)};
     // A system that cannot fit is not built.
-    const uint64_t least = min_bytes(options_.structure, triangles.size()) / sizeof(uvec4);
-    if (const Result<MemoryPlan> plan = plan_memory(options_, least, "at least "); !plan)
+    const uint64_t min_texels = min_bytes(options_.structure, triangles.size()) / sizeof(uvec4);
+    if (const Result<MemoryPlan> plan = plan_memory(options_, min_texels, "at least "); !plan)
         return plan.error();
     Result<System> system =
         thesis::build_system(options_.structure, scene_.soup, whole(), progress);
@@ -229,9 +229,9 @@ template <class Query>
 Result<Done> Comparison::trace(const Query& query) {
     const Stopwatch watch;
     assert(!runner_ || batch_rays_ > 0);
-    const size_t most = runner_ ? batch_rays_ : std::max<size_t>(query.rays.size(), 1);
-    for (size_t first = 0; first < query.rays.size(); first += most) {
-        const size_t count = std::min(most, query.rays.size() - first);
+    const size_t max_rays = runner_ ? batch_rays_ : std::max<size_t>(query.rays.size(), 1);
+    for (size_t first = 0; first < query.rays.size(); first += max_rays) {
+        const size_t count = std::min(max_rays, query.rays.size() - first);
         if (Result<Done> done = Batch<Query>(*this, query, first, count).run(); !done)
             return done;
         (Query::kAnyHit ? statistics_.occlusion_rays : statistics_.nearest_rays) += count;

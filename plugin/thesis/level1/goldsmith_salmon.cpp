@@ -85,7 +85,7 @@ private:
             if (node.children < kMaxChildren)
                 consider(inherited + joined(node.box, box).half_area(), {n, false});
             uint32_t next = kNone;
-            float least = kInfinite;
+            float min_cost = kInfinite;
             for (uint32_t c = node.first_child; c != kNone; c = nodes_[c].next_sibling) {
                 const InsertionNode& child = nodes_[c];
                 if (child.children == 0) {
@@ -95,8 +95,8 @@ private:
                 const float cost = growth(child, box);
                 // Where several grow alike, the smallest family is taken: a chain would be as good,
                 // but long.
-                if (cost < least || (cost == least && child.items < nodes_[next].items)) {
-                    least = cost;
+                if (cost < min_cost || (cost == min_cost && child.items < nodes_[next].items)) {
+                    min_cost = cost;
                     next = c;
                 }
             }

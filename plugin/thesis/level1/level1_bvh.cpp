@@ -20,18 +20,19 @@ struct Branch {
 };
 
 /// Returns the subtree at `node`, whose n leaves take 2 n - 1 nodes in a row (gpu/bvh/bvh.h).
-Branch cut_off(std::span<const BvhNode> nodes, uint32_t node, size_t leaves, uint32_t most) {
-    assert(leaves > 0 && most > 0 && node + 2 * leaves - 1 <= nodes.size());
+Branch cut_off(std::span<const BvhNode> nodes, uint32_t node, size_t leaves,
+               uint32_t max_triangles) {
+    assert(leaves > 0 && max_triangles > 0 && node + 2 * leaves - 1 <= nodes.size());
     Branch branch;
-    if (leaves <= most) {
+    if (leaves <= max_triangles) {
         for (const BvhNode& n : nodes.subspan(node, 2 * leaves - 1))
             if (n.is_leaf())
                 branch.items.push_back(n.item);
         return branch;
     }
     const size_t left = (nodes[node].right - node) / 2;
-    branch.children.push_back(cut_off(nodes, node + 1, left, most));
-    branch.children.push_back(cut_off(nodes, nodes[node].right, leaves - left, most));
+    branch.children.push_back(cut_off(nodes, node + 1, left, max_triangles));
+    branch.children.push_back(cut_off(nodes, nodes[node].right, leaves - left, max_triangles));
     return branch;
 }
 
@@ -47,20 +48,20 @@ void collect(const InsertionTree& tree, uint32_t node, std::vector<uint32_t>& it
     }
 }
 
-Branch merge(const InsertionTree& tree, uint32_t node, uint32_t most) {
+Branch merge(const InsertionTree& tree, uint32_t node, uint32_t max_triangles) {
     Branch branch;
-    if (tree.nodes[node].items <= most) {
+    if (tree.nodes[node].items <= max_triangles) {
         collect(tree, node, branch.items);
         return branch;
     }
     std::vector<uint32_t> together; // the items of siblings that make one leaf
     for (uint32_t child = tree.nodes[node].first_child; child != kNone;
          child = tree.nodes[child].next_sibling) {
-        if (tree.nodes[child].items > most) {
-            branch.children.push_back(merge(tree, child, most));
+        if (tree.nodes[child].items > max_triangles) {
+            branch.children.push_back(merge(tree, child, max_triangles));
             continue;
         }
-        if (together.size() + tree.nodes[child].items > most)
+        if (together.size() + tree.nodes[child].items > max_triangles)
             branch.children.push_back({std::exchange(together, {}), {}});
         collect(tree, child, together);
     }

@@ -45,17 +45,17 @@ uint32_t fullest(const Grid& grid, std::span<const dvec3> centers) {
 }
 
 Grid choose_grid(const Soup& soup, std::span<const TriangleId> triangles, const Box& bounds,
-                 uint32_t most) {
+                 uint32_t max_triangles) {
     std::vector<dvec3> centers;
     centers.reserve(triangles.size());
     for (const TriangleId id : triangles)
         centers.push_back(bounds_of(soup.triangle(id)).center());
-    const uint64_t enough = (triangles.size() + most - 1) / most;
+    const uint64_t enough = (triangles.size() + max_triangles - 1) / max_triangles;
     const uint64_t finest = std::min(kMaxCellsPerLeaf * enough, kMaxGridCells);
     Grid grid;
     grid.bounds = bounds;
     refine(grid, std::min(enough, finest));
-    while (fullest(grid, centers) > most && grid.cell_count() < finest) {
+    while (fullest(grid, centers) > max_triangles && grid.cell_count() < finest) {
         const uint64_t more = uint64_t(grid.cell_count()) * 5 / 4 + 1;
         refine(grid, std::min(more, finest));
     }

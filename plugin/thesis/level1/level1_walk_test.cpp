@@ -22,9 +22,9 @@ struct Built {
     Level1Walk walk;
     Level1 level1;
 
-    Built(const Soup& soup, const Kind& kind, uint32_t most)
+    Built(const Soup& soup, const Kind& kind, uint32_t max_triangles)
         : ids(hittable_triangles(soup, nullptr, &bounds)) {
-        level1 = Level1Builder(soup, ids, bounds, kind.level1, kind.build).cut(most, walk);
+        level1 = Level1Builder(soup, ids, bounds, kind.level1, kind.build).cut(max_triangles, walk);
     }
     bool can_walk(const Ray& ray) const { return ovc::can_walk(level1, PreparedRay(ray)); }
 };
@@ -66,12 +66,12 @@ Hit trace(const Built& built, const Soup& soup, const Ray& ray) {
 TEST(Level1, LeavesKeepToTheCountAndHoldEveryTriangle) {
     for (const auto& [name, soup] : test::unpleasant_soups())
         for (const Kind& kind : kinds())
-            for (const uint32_t most : {1000u, 50u, 7u}) {
-                SCOPED_TRACE(name + ", " + kind.name + ", " + std::to_string(most));
-                const Built built(soup, kind, most);
+            for (const uint32_t max_triangles : {1000u, 50u, 7u}) {
+                SCOPED_TRACE(name + ", " + kind.name + ", " + std::to_string(max_triangles));
+                const Built built(soup, kind, max_triangles);
                 std::set<TriangleId> all;
                 for (const Leaf& leaf : built.level1.leaves) {
-                    EXPECT_LE(leaf.triangles.size(), most);
+                    EXPECT_LE(leaf.triangles.size(), max_triangles);
                     EXPECT_FALSE(leaf.triangles.empty());
                     EXPECT_TRUE(std::is_sorted(leaf.triangles.begin(), leaf.triangles.end()));
                     all.insert(leaf.triangles.begin(), leaf.triangles.end());
@@ -110,14 +110,14 @@ TEST(Level1, WalkingLeavesFindsWhatBruteForceFinds) {
         for (const Ray& ray : rays)
             expected.push_back(test::brute_force(soup, ids, ray));
         for (const Kind& kind : kinds())
-            for (const uint32_t most : {100000u, 300u, 40u}) {
-                const Built built(soup, kind, most);
+            for (const uint32_t max_triangles : {100000u, 300u, 40u}) {
+                const Built built(soup, kind, max_triangles);
                 for (size_t i = 0; i < rays.size(); ++i)
                     if (rays[i].valid() && built.can_walk(rays[i])) {
                         const Hit found = trace(built, soup, rays[i]);
                         ASSERT_TRUE(test::same(expected[i], found))
-                            << name << ", " << kind.name << ", leaves of " << most << ", ray " << i
-                            << ": " << test::describe(expected[i]) << " but found "
+                            << name << ", " << kind.name << ", leaves of " << max_triangles
+                            << ", ray " << i << ": " << test::describe(expected[i]) << " but found "
                             << test::describe(found);
                     }
             }
@@ -178,8 +178,9 @@ TEST(MergeLeaves, MergesAllThatMayBeMergedAndNoMore) {
     };
     EXPECT_EQ(leaves(merge_leaves(full, uint32_t(ids.size()))), 1);
     ptrdiff_t before = 1;
-    for (const uint32_t most : {1000u, 200u, 40u}) {
-        const Level1 level1 = fill_cells(soup, ids, bounds, merge_leaves(full, most), most);
+    for (const uint32_t max_triangles : {1000u, 200u, 40u}) {
+        const Level1 level1 =
+            fill_cells(soup, ids, bounds, merge_leaves(full, max_triangles), max_triangles);
         EXPECT_GT(leaves(level1.nodes), before);
         before = leaves(level1.nodes);
         // Two leaf nodes side by side would not have fitted into one.
@@ -193,7 +194,7 @@ TEST(MergeLeaves, MergesAllThatMayBeMergedAndNoMore) {
                 for (uint32_t l = child.first(); l < child.first() + child.count(); ++l)
                     both.insert(level1.leaves[l].triangles.begin(),
                                 level1.leaves[l].triangles.end());
-            EXPECT_GT(both.size(), most);
+            EXPECT_GT(both.size(), max_triangles);
         }
     }
     EXPECT_TRUE(merge_leaves(KdTree{}, 10).empty());

@@ -15,7 +15,7 @@ using Members = std::vector<TriangleId>;
 
 class Merger {
 public:
-    Merger(const KdTree& full, uint32_t most) : full_(full), max_(most) {}
+    Merger(const KdTree& full, uint32_t max_triangles) : full_(full), max_(max_triangles) {}
 
     std::vector<KdNode> run() {
         if (!full_.nodes.empty())
@@ -64,9 +64,9 @@ private:
 
 } // namespace
 
-std::vector<KdNode> merge_leaves(const KdTree& full, uint32_t most) {
-    assert(most > 0);
-    return Merger(full, most).run();
+std::vector<KdNode> merge_leaves(const KdTree& full, uint32_t max_triangles) {
+    assert(max_triangles > 0);
+    return Merger(full, max_triangles).run();
 }
 
 } // namespace ovc::thesis

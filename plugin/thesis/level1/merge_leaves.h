@@ -10,8 +10,9 @@
 
 namespace ovc::thesis {
 
-/// Returns the nodes of `full`, each subtree of at most `most` (> 0) different triangles merged
-/// into one leaf node. Leaf nodes name nothing: fill_cells() of kdtree/partition.h does that anew.
-std::vector<KdNode> merge_leaves(const KdTree& full, uint32_t most);
+/// Returns the nodes of `full`, each subtree of at most `max_triangles` (> 0) different triangles
+/// merged into one leaf node. Leaf nodes name nothing: fill_cells() of kdtree/partition.h does that
+/// anew.
+std::vector<KdNode> merge_leaves(const KdTree& full, uint32_t max_triangles);
 
 } // namespace ovc::thesis

@@ -102,10 +102,10 @@ Result<Done> QueuedRays::trace_next_leaf() {
     const uint32_t leaf =
         queues_.choose([&](uint32_t l) { return s_.passes->resident(l); }, s_.built.pages);
     const std::vector<uint32_t> queue = queues_.take(leaf);
-    const size_t most = s_.plan.batch_rays;
-    for (size_t at = 0; at < queue.size(); at += most)
+    const size_t max_rays = s_.plan.batch_rays;
+    for (size_t at = 0; at < queue.size(); at += max_rays)
         if (Result<Done> done =
-                pass(leaf, std::span(queue).subspan(at, std::min(most, queue.size() - at)));
+                pass(leaf, std::span(queue).subspan(at, std::min(max_rays, queue.size() - at)));
             !done)
             return done;
     return Done{};

@@ -45,13 +45,14 @@ size_t build_pages(QueuedScene& scene, BuildProgress* progress) {
 }
 
 /// Builds both levels, and again with smaller leaves while a page is too large.
-Result<Done> build_levels(QueuedScene& scene, const Level1Builder& builder, uint64_t most,
+Result<Done> build_levels(QueuedScene& scene, const Level1Builder& builder, uint64_t max_triangles,
                           BuildProgress* progress) {
     const uint64_t page_bytes = scene.plan.pool_bytes / kPagesAtOnce;
-    most = std::clamp<uint64_t>(std::min(most, page_bytes / kBytesPerTriangle), 1, kNone);
+    max_triangles =
+        std::clamp<uint64_t>(std::min(max_triangles, page_bytes / kBytesPerTriangle), 1, kNone);
     while (true) {
         Stopwatch watch;
-        scene.built.level1 = builder.cut(uint32_t(most), scene.walk);
+        scene.built.level1 = builder.cut(uint32_t(max_triangles), scene.walk);
         scene.statistics.seconds_level1 += watch.seconds();
         watch = Stopwatch();
         const size_t largest = build_pages(scene, progress);
@@ -62,13 +63,13 @@ Result<Done> build_levels(QueuedScene& scene, const Level1Builder& builder, uint
                                               scene.built.pages.size()); // for the exact fallback
             return Done{};
         }
-        if (most == 1)
+        if (max_triangles == 1)
             return over_budget(
                 format_text("a page of one triangle does not fit into {} bytes", page_bytes));
         // The bytes per triangle of this page, and a little more, tell how many triangles fit.
         const double triangles = double(scene.built.level1.leaves[largest].triangles.size());
         const uint64_t fit = uint64_t(0.95 * double(page_bytes) / double(bytes) * triangles);
-        most = std::clamp<uint64_t>(fit, 1, most - 1);
+        max_triangles = std::clamp<uint64_t>(fit, 1, max_triangles - 1);
     }
 }
 
