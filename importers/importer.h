@@ -19,7 +19,7 @@ namespace ovc {
 inline constexpr uint64_t kMaxTriangles = 0xfffffffe;
 
 /// The default of ImportOptions::max_triangles: 3.6 GB of soup.
-inline constexpr uint64_t kDefaultMostTriangles = 100'000'000;
+inline constexpr uint64_t kDefaultMaxTriangles = 100'000'000;
 
 /// The range of ImportOptions::tolerance: at the min a sphere has 1e5 triangles, at the max a
 /// circle is an octagon.
@@ -39,7 +39,7 @@ struct ImportOptions {
     bool strict = false;
     /// The max triangles of a scene description. The reader refuses more before it makes them;
     /// pbrt/census.h says how it counts instances.
-    uint64_t max_triangles = kDefaultMostTriangles;
+    uint64_t max_triangles = kDefaultMaxTriangles;
     /// How far a triangle of a scene description may lie off the round shape it stands for, in the
     /// shape's radii, from kMinTolerance to kMaxTolerance. Each reader has a default of its own.
     std::optional<double> tolerance = {};

@@ -11,7 +11,7 @@ import sys
 import tree
 
 OLD = {
-    r"\bk(Most|Least|Fewest)[A-Z]\w*": "kMax, kMin",
+    r"\bk([A-Z]\w*)?(Most|Least|Fewest)([A-Z]\w*|\b)": "kMax, kMin",
     r"\barbiter\w*": "exact fallback",
     r"\b(settling|Settling|settled in double)\b": "resolve",
     r"\b[Rr]ivals?(_\w+|\b)": "candidate",

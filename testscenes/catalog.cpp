@@ -18,13 +18,13 @@ namespace {
 
 struct Generator {
     CatalogEntry entry;
-    uint32_t least = 0, most = 0; // the range of N; no N when most is 0
+    uint32_t min = 0, max = 0; // the range of N; no N when max is 0
     Scene (*make)(uint32_t size, const Soup* model);
     CameraPath (*path)(uint32_t size) = nullptr;
     Scene (*make_moving)(double clock) = nullptr;
-    uint32_t most_streamed = 0; // the N of a scene that streams
+    uint32_t max_streamed = 0; // the N of a scene that streams
 
-    bool sized() const { return most != 0; }
+    bool sized() const { return max != 0; }
     /// "terrain-" for "terrain-N", "knot" for "knot".
     std::string_view stem() const {
         return sized() ? entry.name.substr(0, entry.name.size() - 1) : entry.name;
@@ -194,12 +194,12 @@ Result<Request> find(std::string_view name, bool streamed = false) {
         return Error{"no test scene is called \"" + std::string(name) + "\"; did you mean \"" +
                      std::string(nearest_name(name)) + "\"?"};
     const Generator& generator = *request->generator;
-    const uint32_t most = streamed ? generator.most_streamed : generator.most;
-    const bool in_range = request->size >= generator.least && request->size <= most;
+    const uint32_t max = streamed ? generator.max_streamed : generator.max;
+    const bool in_range = request->size >= generator.min && request->size <= max;
     if (generator.sized() && !in_range)
         return Error{"test scene \"" + std::string(name) + "\": the N of " +
                      std::string(generator.entry.name) + " must be from " +
-                     std::to_string(generator.least) + " to " + std::to_string(most)};
+                     std::to_string(generator.min) + " to " + std::to_string(max)};
     return *request;
 }
 

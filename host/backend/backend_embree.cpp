@@ -293,15 +293,15 @@ private:
     template <unsigned N, class Find, class Tell>
     void for_each_block(std::span<const Ray> rays, const Exclusions& without, const Find& find,
                         const Tell& tell) {
-        constexpr size_t most = Block<N>::kRays;
+        constexpr size_t kRays = Block<N>::kRays;
         const Stopwatch call;
         std::atomic<double> inside = 0, all = 0; // seconds of all threads together
-        parallel_for((rays.size() + most - 1) / most, 1, [&](size_t first, size_t last) {
+        parallel_for((rays.size() + kRays - 1) / kRays, 1, [&](size_t first, size_t last) {
             const Stopwatch task;
             Block<N> block(soup_);
             for (size_t b = first; b < last; ++b) {
-                const size_t from = b * most;
-                const size_t count = std::min(most, rays.size() - from);
+                const size_t from = b * kRays;
+                const size_t count = std::min(kRays, rays.size() - from);
                 const Exclusions part = without.subspan(from, count);
                 block.load(rays.subspan(from, count), part);
                 const Stopwatch watch;

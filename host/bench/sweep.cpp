@@ -45,8 +45,8 @@ SceneBench bench_of(const BenchJob& job, std::string scene, Asked asked,
     return bench;
 }
 
-Error nothing_within(const BenchJob& job, uint64_t least) {
-    return Error{fmt::format("--most {} leaves no row; the first has {}", job.most, least)};
+Error nothing_within(const BenchJob& job, uint64_t smallest) {
+    return Error{fmt::format("--most {} leaves no row; the first has {}", job.most, smallest)};
 }
 
 constexpr uint64_t sphere_triangles(uint32_t n) {

@@ -66,7 +66,7 @@ Interrupted with Ctrl-C, it prints what it has and exits with 2.)";
 /// which repeats what it says.
 class QuietLog {
 public:
-    explicit QuietLog(LogLevel most) : log_(standard_error_log(most)) {}
+    explicit QuietLog(LogLevel max_level) : log_(standard_error_log(max_level)) {}
     LogSink sink() {
         return [this](LogLevel level, const std::string& message) {
             const std::lock_guard lock(mutex_); // a device's thread may call

@@ -89,15 +89,15 @@ bool is_page(const std::string& name) {
 
 /// Parses a whole number such as "100000000" or "1e8".
 Result<uint64_t> parse_rays(const std::string& text) {
-    constexpr double most = 1e12;
+    constexpr double kMaxRays = 1e12;
     double value = 0;
     const char* end = text.data() + text.size();
     const auto [stop, failure] = std::from_chars(text.data(), end, value);
-    if (failure != std::errc{} || stop != end || !(value >= 1 && value <= most) ||
+    if (failure != std::errc{} || stop != end || !(value >= 1 && value <= kMaxRays) ||
         value != std::floor(value))
         return Error{fmt::format("--rays needs a whole number from 1 to {:.0e}, such as 1e8, not "
                                  "'{}'",
-                                 most, text)};
+                                 kMaxRays, text)};
     return uint64_t(value);
 }
 

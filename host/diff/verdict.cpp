@@ -19,8 +19,9 @@ static constexpr const char* kVerdicts[] = {"ok", "warning", "failure"};
 
 bool Limit::is_passed_by(const Comparison& comparison) const {
     const auto& worst = comparison.worst;
-    const double most = worst.empty() ? 0 : double(*std::max_element(worst.begin(), worst.end()));
-    return double(comparison.over(each)) > percent / 100 * double(worst.size()) || most > any;
+    const double largest =
+        worst.empty() ? 0 : double(*std::max_element(worst.begin(), worst.end()));
+    return double(comparison.over(each)) > percent / 100 * double(worst.size()) || largest > any;
 }
 
 Verdict judge(const Comparison& comparison, const Limits& limits) {

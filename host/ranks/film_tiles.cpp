@@ -72,9 +72,9 @@ std::vector<uint32_t> FilmTiles::wishes(uint32_t ranks, const FirstRanks& first_
         for (uint32_t i = 0; i < kAsked; ++i)
             if (const uint32_t rank = first[tile * kAsked + i]; rank < ranks)
                 ++votes[rank];
-        const auto most = std::ranges::max_element(votes);
-        if (*most > 0)
-            wished[tile] = uint32_t(most - votes.begin());
+        const auto largest = std::ranges::max_element(votes);
+        if (*largest > 0)
+            wished[tile] = uint32_t(largest - votes.begin());
     }
     return wished;
 }
@@ -92,9 +92,9 @@ std::vector<uint32_t> FilmTiles::deal(uint32_t ranks, const FirstRanks& first_ra
     // ranks, as they should, for their rays take about as long.
     for (uint32_t tile = 0; tile < count(); ++tile)
         if (owners[tile] == kNone) {
-            const auto fewest = std::ranges::min_element(has);
-            owners[tile] = uint32_t(fewest - has.begin());
-            ++*fewest;
+            const auto smallest = std::ranges::min_element(has);
+            owners[tile] = uint32_t(smallest - has.begin());
+            ++*smallest;
         }
     return owners;
 }

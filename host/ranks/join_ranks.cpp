@@ -13,10 +13,10 @@ namespace ovc {
 /// file. Of the rest most are pages, which are read once, on their way to the device; it is corners
 /// that are read again and again.
 static uint64_t share_of_file(const std::string& path, uint32_t ranks) {
-    constexpr uint64_t kLeast = uint64_t(8) << 20;
+    constexpr uint64_t kMin = uint64_t(8) << 20;
     std::error_code unreadable; // which whoever opens it will tell
     const uint64_t bytes = std::filesystem::file_size(path, unreadable);
-    return unreadable ? kLeast : std::max(kLeast, bytes / ranks / 5);
+    return unreadable ? kMin : std::max(kMin, bytes / ranks / 5);
 }
 
 Result<Done> join_ranks(std::string_view command, BackendOptions& backend, SceneArguments& scene) {

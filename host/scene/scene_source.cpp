@@ -56,7 +56,7 @@ void SceneArguments::add_to(CLI::App& app, const char* name) {
 
 static Result<uint64_t> triangle_limit(const std::string& text) {
     if (text.empty())
-        return kDefaultMostTriangles;
+        return kDefaultMaxTriangles;
     return parse_count("--max-triangles", text, 1, 4294967294);
 }
 
@@ -187,9 +187,9 @@ Result<Scene> open_scene(const std::string& source, const ImportOptions& options
     return load(source, options);
 }
 
-LogSink standard_error_log(LogLevel most) {
-    return [most](LogLevel level, const std::string& message) {
-        if (level > most)
+LogSink standard_error_log(LogLevel max_level) {
+    return [max_level](LogLevel level, const std::string& message) {
+        if (level > max_level)
             return;
         print_message((level == LogLevel::Warning ? "warning: " : "") + message);
     };

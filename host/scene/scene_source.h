@@ -59,7 +59,7 @@ ImportOptions import_options(const SceneArguments& arguments, const LogSink& log
 Result<Scene> open_scene(const SceneArguments& arguments, const LogSink& log,
                          std::optional<ImageSize> size = {}, FilesRead* files = nullptr);
 
-/// Returns a log that writes messages up to the level `most` to standard error, one line each.
-LogSink standard_error_log(LogLevel most);
+/// Returns a log that writes messages up to the level `max_level` to standard error, one line each.
+LogSink standard_error_log(LogLevel max_level);
 
 } // namespace ovc

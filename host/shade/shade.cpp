@@ -110,10 +110,11 @@ static dvec3 weights_off_edges(const Hit& hit, const Triangle& t, double doubled
     const dvec3 heights = doubled_area / edges;
     const dvec3 wanted = glm::clamp(dvec3(kEdgeShare), kMinEdgeOffsets * offset / heights,
                                     kMaxEdgeOffsets * offset / heights);
-    const dvec3 least = glm::min(wanted, dvec3(0.25));
-    if (glm::all(glm::greaterThanEqual(weights, least)))
+    const dvec3 min_weights = glm::min(wanted, dvec3(0.25));
+    if (glm::all(glm::greaterThanEqual(weights, min_weights)))
         return weights;
-    return least + (1 - least.x - least.y - least.z) * glm::clamp(weights, 0.0, 1.0);
+    return min_weights +
+           (1 - min_weights.x - min_weights.y - min_weights.z) * glm::clamp(weights, 0.0, 1.0);
 }
 
 /// Returns the number of the material on the side of the surface that is seen.

@@ -33,9 +33,9 @@ static uint64_t group_bytes() {
     while (std::getline(file, line))
         if (line.starts_with("0::")) {
             const std::string group = "/sys/fs/cgroup" + line.substr(3);
-            const uint64_t most = number_in(group + "/memory.max");
+            const uint64_t limit = number_in(group + "/memory.max");
             const uint64_t used = number_in(group + "/memory.current");
-            return most == kUnknown || used == kUnknown ? kUnknown : most - std::min(most, used);
+            return limit == kUnknown || used == kUnknown ? kUnknown : limit - std::min(limit, used);
         }
     return kUnknown;
 }

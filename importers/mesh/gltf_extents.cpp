@@ -85,16 +85,16 @@ private:
             fault_ = std::move(sentence);
     }
 
-    /// Returns a number up to `most`; `otherwise`, or a fault if that is none, where it is missing.
-    uint64_t number(const Json& of, const char* key, const std::string& place, uint64_t most,
+    /// Returns a number up to `max`; `otherwise`, or a fault if that is none, where it is missing.
+    uint64_t number(const Json& of, const char* key, const std::string& place, uint64_t max,
                     std::optional<uint64_t> otherwise = {}) {
         const auto at = of.find(key);
         if (at == of.end() && otherwise)
             return *otherwise;
-        if (at != of.end() && at->is_number_unsigned() && at->get<uint64_t>() <= most)
+        if (at != of.end() && at->is_number_unsigned() && at->get<uint64_t>() <= max)
             return at->get<uint64_t>();
         fail(fmt::format("found {} as {} of {}, expected a number from 0 to {}",
-                         at == of.end() ? "nothing" : at->dump().substr(0, 40), key, place, most));
+                         at == of.end() ? "nothing" : at->dump().substr(0, 40), key, place, max));
         return 0;
     }
 

@@ -117,10 +117,10 @@ private:
         element.name = next_word(rest);
         const std::string_view count = next_word(rest);
         const auto value = parse_number<uint64_t>(count);
-        const uint64_t most = max_rows(element.name);
-        if (value ? *value > most : is_whole(count))
+        const uint64_t max = max_rows(element.name);
+        if (value ? *value > max : is_whole(count))
             return wrong(found(count, "element count"),
-                         fmt::format("at most {} rows of {}", most, element.name));
+                         fmt::format("at most {} rows of {}", max, element.name));
         if (!value)
             return wrong(found(count, "element count"), "a whole number, 0 or more");
         element.count = *value;

@@ -83,13 +83,13 @@ Census take_census(const World& world) {
     return census;
 }
 
-Result<Done> check_census(const Census& census, uint64_t most, bool is_held) {
+Result<Done> check_census(const Census& census, uint64_t max_triangles, bool is_held) {
     const std::string what =
         fmt::format("{} triangles once {} instances of {} are expanded", shown(census.triangles),
                     shown(census.instances), shown(census.unique));
-    if (census.kept > most)
-        return Error{
-            fmt::format("found {}, expected at most {}; --max-triangles allows more", what, most)};
+    if (census.kept > max_triangles)
+        return Error{fmt::format("found {}, expected at most {}; --max-triangles allows more", what,
+                                 max_triangles)};
     if (census.triangles > kMaxTriangles)
         return Error{fmt::format("found {}, expected at most {}", what, kMaxTriangles)};
     const uint64_t bytes =

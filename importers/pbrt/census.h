@@ -27,9 +27,9 @@ Census take_census(const World& world);
 /// Objects of fewer triangles are expanded, so that tiles which touch keep touching (assembly.h).
 inline constexpr uint64_t kMinShared = 64;
 
-/// Refuses a soup that keeps more than `most` triangles, has more than kMaxTriangles, or, if it
-/// `is_held`, does not fit into the available memory.
-Result<Done> check_census(const Census& census, uint64_t most, bool is_held);
+/// Refuses a soup that keeps more than `max_triangles` triangles, has more than kMaxTriangles, or,
+/// if it `is_held`, does not fit into the available memory.
+Result<Done> check_census(const Census& census, uint64_t max_triangles, bool is_held);
 /// Refuses a scene that cannot be converted in so much memory, as shared corners have to be.
 Result<Done> check_conversion(const Census& census, uint64_t host_bytes);
 

@@ -88,10 +88,10 @@ CirclePieces choose_pieces(const Gatherer& gatherer, const Look& look, const Sce
         choose_segments(gatherer, {}, others ? kFineSegments : kFineSegmentsOfCircles));
 }
 
-void require_at_most(uint64_t most, const Gatherer& gatherer, int segments, const Place& at) {
-    if (const double count = triangles_at(gatherer, segments); count > double(most))
+void require_at_most(uint64_t max, const Gatherer& gatherer, int segments, const Place& at) {
+    if (const double count = triangles_at(gatherer, segments); count > double(max))
         throw ParseError(
-            at, fmt::format("found about {:.0f} triangles, expected at most {}", count, most));
+            at, fmt::format("found about {:.0f} triangles, expected at most {}", count, max));
 }
 
 /// Returns a box around all shapes that are not endless and the origins of solids that are.

@@ -12,7 +12,7 @@ struct Look {
     vec3 ambient_light{1};
     vec3 irid_wavelengths{Finish{}.irid_wavelengths};
     bool before_3_7 = false; // the scene's version is below 3.7
-    uint64_t max_triangles = kDefaultMostTriangles;
+    uint64_t max_triangles = kDefaultMaxTriangles;
     std::optional<double> tolerance;       // as in ImportOptions
     std::function<void(const Note&)> tell; // gets the notes of all objects drawn; may be empty
     std::optional<dvec3> eye;              // planes reach as far as the camera can see them

@@ -47,7 +47,7 @@ Prototype make_rock(Random random, double detail);
 /// is as long as the leaf. `normal` points up from its upper side.
 void add_leaf(Corners& out, dvec3 base, dvec3 along, dvec3 normal, double width);
 
-/// Returns how many of `count` at full detail remain, at least `least`.
-uint32_t scaled(double count, double detail, uint32_t least);
+/// Returns how many of `count` at full detail remain, at least `min_count`.
+uint32_t scaled(double count, double detail, uint32_t min_count);
 
 } // namespace ovc::plants

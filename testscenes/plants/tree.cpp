@@ -83,8 +83,8 @@ void add_hanging(Corners& out, const std::vector<Knot>& knots, double detail, Ra
 
 } // namespace
 
-uint32_t scaled(double count, double detail, uint32_t least) {
-    return std::max(least, uint32_t(count * detail + 0.5));
+uint32_t scaled(double count, double detail, uint32_t min_count) {
+    return std::max(min_count, uint32_t(count * detail + 0.5));
 }
 
 void add_leaf(Corners& out, dvec3 base, dvec3 along, dvec3 normal, double width) {

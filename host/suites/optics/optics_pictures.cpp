@@ -67,9 +67,9 @@ Result<OpticsScore> compare(const Scene& scene, const Scene& reference, double a
         return expected.error();
     for (size_t i = 0; i < image->pixels.size(); ++i) {
         const vec4 off = glm::abs(image->pixels[i] - expected->pixels[i]);
-        const double most = std::max(max_component(vec3(off)), off.w);
-        score.wrong += !(most <= allowed);
-        score.error = std::max(score.error, most);
+        const double largest = std::max(max_component(vec3(off)), off.w);
+        score.wrong += !(largest <= allowed);
+        score.error = std::max(score.error, largest);
     }
     return score;
 }

@@ -45,8 +45,8 @@ struct Steps {
     /// Returns a whole number of steps, from 1 to the larger of a circle's and kMaxQuadricSteps; 1
     /// for NaN.
     size_t whole(double steps) const {
-        const double most = std::max(kMaxQuadricSteps, round(true));
-        return steps > 1 ? size_t(std::ceil(std::min(steps, most))) : 1;
+        const double max_steps = std::max(kMaxQuadricSteps, round(true));
+        return steps > 1 ? size_t(std::ceil(std::min(steps, max_steps))) : 1;
     }
     size_t of(double share_of_circle, bool is_curved) const {
         return whole(share_of_circle * round(is_curved) - 1e-9);

@@ -34,10 +34,10 @@ Result<DensityGrid> read_density(const std::filesystem::path& path) {
     if (width != 1 && width != 2 && width != 4)
         return Error{fmt::format("{}: found {} bytes of values, expected 1, 2 or 4 for each of {}",
                                  path.string(), room, count)};
-    const double most = double((uint64_t(1) << (8 * width)) - 1);
+    const double max_value = double((uint64_t(1) << (8 * width)) - 1);
     grid.values.reserve(count);
     for (uint64_t i = 0; i < count; ++i)
-        grid.values.push_back(float(number(kHeader + i * width, width) / most));
+        grid.values.push_back(float(number(kHeader + i * width, width) / max_value));
     return grid;
 }
 

@@ -43,8 +43,8 @@ HolesPtr holes_of(const Picture& picture, const MapTransparency& transparency, b
         sum += opacity * color;
         weights += opacity;
     }
-    const auto [least, most] = std::ranges::minmax(cutout.opacity);
-    if (least == most && !transparency.once)
+    const auto [min, max] = std::ranges::minmax(cutout.opacity);
+    if (min == max && !transparency.once)
         return nullptr;
     holes->color.rgb = weights > 0 ? vec3(sum / weights) : vec3(0);
     holes->color.filter = transparency.all.filter;

@@ -15,24 +15,24 @@ public:
 
     Result<Picture> read() {
         const bool is_text = kind_ == '2' || kind_ == '3', is_gray = kind_ == '2' || kind_ == '5';
-        const uint64_t width = number(), height = number(), most = number();
+        const uint64_t width = number(), height = number(), max_value = number();
         Result<Picture> picture = make_picture(width, height);
         if (!picture)
             return picture;
-        if (most == 0 || most > 65535)
+        if (max_value == 0 || max_value > 65535)
             return Error{"found a PGM or PPM picture whose samples do not go to 1 to 65535"};
         if (!is_text)
             ++at_; // one space ends the header
-        const size_t channels = is_gray ? 1 : 3, bytes = most > 255 ? 2 : 1;
-        const size_t least = picture->size() * channels * (is_text ? 1 : bytes);
-        if (at_ > file_.size() || file_.size() - at_ < least)
+        const size_t channels = is_gray ? 1 : 3, bytes = max_value > 255 ? 2 : 1;
+        const size_t min_bytes = picture->size() * channels * (is_text ? 1 : bytes);
+        if (at_ > file_.size() || file_.size() - at_ < min_bytes)
             return Error{"found a PGM or PPM picture that ends too early"};
         picture->gray = is_gray;
         picture->pixels.resize(picture->size());
         for (auto& pixel : picture->pixels) {
             for (size_t c = 0; c < channels; ++c) {
                 const uint64_t sample = is_text ? number() : raw(bytes);
-                pixel[c] = uint16_t(std::min(sample, most) * 65535 / most);
+                pixel[c] = uint16_t(std::min(sample, max_value) * 65535 / max_value);
             }
             if (is_gray)
                 pixel[1] = pixel[2] = pixel[0];

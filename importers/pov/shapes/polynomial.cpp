@@ -53,7 +53,7 @@ Range power(double lo, double hi, int exponent) {
 
 } // namespace
 
-double Polynomial::least(const Box& box) const {
+double Polynomial::min_over(const Box& box) const {
     std::array<std::array<Range, 3>, kMaxOrder + 1> powers; // of the coordinates
     for (int k = 0; k <= highest; ++k)
         for (int i = 0; i < 3; ++i)
@@ -110,7 +110,7 @@ double farthest(const Polynomial& polynomial, const Box& whole, int axis, int wa
         for (const int half : {0, 1}) {
             Box part = box;
             (half ? part.lo : part.hi)[longest] = box.center()[longest];
-            if (!(polynomial.least(part) > 0))
+            if (!(polynomial.min_over(part) > 0))
                 open.push(part);
         }
     }

@@ -22,7 +22,7 @@ struct Polynomial {
     void add(const Term& term);
     double operator()(const dvec3& p) const;
     /// Returns a lower bound on the values in the box.
-    double least(const Box& box) const;
+    double min_over(const Box& box) const;
 };
 
 /// Returns the polynomial with factors_of(order) factors, whose terms are in POV-Ray's order: by

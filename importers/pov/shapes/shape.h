@@ -61,7 +61,7 @@ inline TextureStep wrapped_around_y(TextureStep::Kind kind, double major_radius 
     return {kind, {dvec4(2, 0, major_radius, 0), dvec4(0), dvec4(0)}};
 }
 
-/// Reads how many points a shape has, from `least` to 10 million, which bounds the memory it takes.
-int parse_count(Reader& reader, int least);
+/// Reads how many points a shape has, from `min` to 10 million, which bounds the memory it takes.
+int parse_count(Reader& reader, int min);
 
 } // namespace ovc::pov

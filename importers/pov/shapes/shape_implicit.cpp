@@ -234,8 +234,8 @@ int cells_of(const Components& parts, const Box& box, int segments) {
             smallest = std::min(smallest, max_component(part.box.extent()));
     const double wanted = 0.25 * segments * max_component(box.extent()) / smallest;
     constexpr double kMax = 256;
-    const double least = std::min<double>(field_cells(segments), kMax);
-    return wanted > least ? int(std::min(wanted, kMax)) : int(least);
+    const double min_cells = std::min<double>(field_cells(segments), kMax);
+    return wanted > min_cells ? int(std::min(wanted, kMax)) : int(min_cells);
 }
 
 std::vector<double> parse_factors(Reader& reader, int order) {

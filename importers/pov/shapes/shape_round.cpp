@@ -83,8 +83,8 @@ double signed_power(double base, double exponent) {
 
 } // namespace
 
-int parse_count(Reader& reader, int least) {
-    return parse_int(reader, least, 10'000'000, "the number of points");
+int parse_count(Reader& reader, int min) {
+    return parse_int(reader, min, 10'000'000, "the number of points");
 }
 
 Shape parse_sphere(Reader& reader) {

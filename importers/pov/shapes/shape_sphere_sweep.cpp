@@ -155,9 +155,9 @@ Shape parse_sphere_sweep(Reader& reader) {
         if (!(length > 0))
             return;
         const double wanted = 0.25 * segments * length / (2 * thinnest);
-        const double least = std::min<double>(field_cells(segments), kMaxCells);
+        const double min_cells = std::min<double>(field_cells(segments), kMaxCells);
         cut_field(field_of(capsules), box.padded(0.01 * length),
-                  int(std::clamp(wanted, least, kMaxCells)), out);
+                  int(std::clamp(wanted, min_cells, kMaxCells)), out);
         out.smooth = true;
     };
     return shape;

@@ -126,11 +126,11 @@ std::vector<std::vector<ProfilePoint>> lathe_profiles(Curve curve, const std::ve
 void close_lathe(const std::vector<std::vector<ProfilePoint>>& profiles, int segments,
                  Facets& out) {
     std::vector<dvec2> begins, ends;
-    double least = std::numeric_limits<double>::infinity();
+    double min_radius = std::numeric_limits<double>::infinity();
     for (const std::vector<ProfilePoint>& profile : profiles) {
         begins.push_back(profile.front().at);
         for (const ProfilePoint& p : profile)
-            least = std::min(least, p.at.x);
+            min_radius = std::min(min_radius, p.at.x);
     }
     for (const std::vector<ProfilePoint>& profile : profiles) {
         const dvec2& end = profile.back().at;
@@ -143,9 +143,11 @@ void close_lathe(const std::vector<std::vector<ProfilePoint>>& profiles, int seg
     }
     assert(begins.size() == ends.size());
     for (size_t i = 0; i < ends.size(); ++i)
-        revolve(
-            {{ends[i], {}}, {{least, ends[i].y}, {}}, {{least, begins[i].y}, {}}, {begins[i], {}}},
-            segments, nullptr, out);
+        revolve({{ends[i], {}},
+                 {{min_radius, ends[i].y}, {}},
+                 {{min_radius, begins[i].y}, {}},
+                 {begins[i], {}}},
+                segments, nullptr, out);
 }
 
 } // namespace

@@ -368,11 +368,11 @@ double parse_float(Reader& reader) {
     return as_float(reader, parse_number(reader));
 }
 
-int parse_int(Reader& reader, int least, int most, std::string_view what) {
+int parse_int(Reader& reader, int min, int max, std::string_view what) {
     const Place at = reader.peek().place;
     const double value = parse_float(reader);
-    if (!(value >= least && value < double(most) + 1))
-        reader.fail(at, fmt::format("found {} as {}, expected {} to {}", value, what, least, most));
+    if (!(value >= min && value < double(max) + 1))
+        reader.fail(at, fmt::format("found {} as {}, expected {} to {}", value, what, min, max));
     return int(value);
 }
 

@@ -13,8 +13,8 @@ Number parse_number(Reader& reader);
 Number parse_logical(Reader& reader);
 
 double parse_float(Reader& reader);
-/// Reads a float from `least` to below `most` + 1 and truncates it. `what` names it in the error.
-int parse_int(Reader& reader, int least, int most, std::string_view what);
+/// Reads a float from `min` to below `max` + 1 and truncates it. `what` names it in the error.
+int parse_int(Reader& reader, int min, int max, std::string_view what);
 /// Reads a vector. A float counts for all components, here and in the next two functions.
 dvec3 parse_vector(Reader& reader);
 dvec2 parse_vector2(Reader& reader);

@@ -380,11 +380,11 @@ bool Reader::case_matches(std::string_view directive, double value) {
     if (directive == "case")
         return hooks_.condition(*this) == value;
     expect('(', "#range");
-    const double least = hooks_.number(*this);
+    const double min = hooks_.number(*this);
     take_comma();
-    const double most = hooks_.number(*this);
+    const double max = hooks_.number(*this);
     expect(')', "#range");
-    return value >= least && value <= most;
+    return value >= min && value <= max;
 }
 
 void Reader::do_break(const Token& at) {
