@@ -232,6 +232,27 @@ TEST(PbrtTexture, WhatIsShownByItsMeanIsSaidWhereverItStands) {
                   "a.pbrt:4: textures of surfaces that emit light are shown by their mean"}));
 }
 
+TEST(PbrtTexture, TooManyInEachOtherAreAnError) {
+    const std::string color = "Texture \"t0\" \"color\" \"checkerboard\" MakeNamedMaterial \"m0\" "
+                              "\"string type\" \"matte\" \"texture Kd\" \"t0\"\n";
+    const auto failure = [&](const std::string& before, const std::string& middle) {
+        std::string text = color;
+        for (int i = 1; i <= 1001; ++i)
+            text += before + std::to_string(i) + middle + std::to_string(i - 1) + "\"]\n";
+        const TestFolder folder;
+        folder.write("a.pbrt", text);
+        return folder.failure("a.pbrt");
+    };
+    EXPECT_EQ(failure("Texture \"t", "\" \"color\" \"scale\" \"texture tex1\" [\"t"),
+              "a.pbrt:1001: found a texture of more than 1000 others");
+    EXPECT_EQ(failure("Texture \"t",
+                      "\" \"color\" \"mix\" \"texture tex2\" \"t0\" \"texture tex1\" [\"t"),
+              "a.pbrt:501: found a texture of more than 1000 others");
+    EXPECT_EQ(failure("MakeNamedMaterial \"m",
+                      "\" \"string type\" \"mix\" \"string materials\" [\"m0\" \"m"),
+              "a.pbrt:1002: found a mix of more than 1000 others");
+}
+
 TEST(PbrtTexture, WordsThatPbrtRefusesAreSaid) {
     const auto warnings = [](const std::string& words) {
         return read_textured("Texture \"c\" \"color\" \"imagemap\" \"string filename\" \"a.png\" " +

@@ -36,7 +36,8 @@ bool Materials::is_on_uv(const Material& material) const {
            (material.normal_map && textures_.is_on_uv(material.normal_map->texture));
 }
 
-uint32_t Materials::add(Material material, uint32_t holes) {
+uint32_t Materials::add(Mapped made) {
+    auto& [material, holes, mixes] = made;
     std::string key = key_of(material);
     const auto [first, last] = by_key_.equal_range(key);
     for (auto at = first; at != last; ++at)
@@ -44,6 +45,7 @@ uint32_t Materials::add(Material material, uint32_t holes) {
             return at->second;
     by_key_.emplace(std::move(key), uint32_t(all_.size()));
     holes_.push_back(holes);
+    mixes_.push_back(mixes);
     wants_uv_.push_back(is_on_uv(material));
     all_.push_back(std::move(material));
     return uint32_t(all_.size() - 1);
@@ -52,7 +54,7 @@ uint32_t Materials::add(Material material, uint32_t holes) {
 Materials::Mapped Materials::mapped(const std::string& type, const Parameters& parameters,
                                     const Place& place) {
     if (type == "mix")
-        return {mix(parameters, place)};
+        return mix(parameters, place);
     const MaterialContext context{textures_, parameters, diagnostics_, place};
     if (std::optional<Material> material = material_of(type, context))
         return {std::move(*material), holes_of(type, context).value_or(kNoTexture)};
@@ -140,16 +142,24 @@ static Grounds mix_optics(const Mixture& mix, Optics& m) {
     return grounds;
 }
 
-/// Mixes part by part. What cannot be mixed is that of the only material that has a boundary, or
-/// else of the larger share.
-Material Materials::mix(const Parameters& parameters, const Place& place) {
+Materials::Mapped Materials::mix(const Parameters& parameters, const Place& place) {
     std::string names[2] = {parameters.text("namedmaterial1"), parameters.text("namedmaterial2")};
     const Parameter* const v4 = parameters.find("materials", {Kind::String});
     if (v4 && v4->strings.size() >= 2)
         std::copy_n(v4->strings.begin(), 2, names);
     else // v3's amount is that of the first
         std::swap(names[0], names[1]);
-    const Material a = all_[named(names[0], place)], b = all_[named(names[1], place)];
+    const uint32_t a = named(names[0], place), b = named(names[1], place);
+    const uint32_t mixes = 1 + mixes_[a] + mixes_[b];
+    if (mixes > kMaxCombined)
+        diagnostics_.fail(place, fmt::format("found a mix of more than {} others", kMaxCombined));
+    return {mixed(all_[a], all_[b], parameters, place), kNoTexture, mixes};
+}
+
+/// Mixes part by part. What cannot be mixed is that of the only material that has a boundary, or
+/// else of the larger share.
+Material Materials::mixed(const Material& a, const Material& b, const Parameters& parameters,
+                          const Place& place) {
     const vec3 amount =
         glm::clamp(textures_.color(parameters, "amount", vec3(0.5f)), vec3(0), vec3(1));
     const Mixture mixture{
@@ -183,14 +193,14 @@ uint32_t Materials::make(const std::string& type, const Parameters& parameters,
                          const Place& place) {
     Mapped made = mapped(type, parameters, place);
     made.material.name = type;
-    return add(std::move(made.material), made.holes);
+    return add(std::move(made));
 }
 
 void Materials::define(const std::string& name, const Parameters& parameters, const Place& place) {
     const std::string type = parameters.text("type", "matte");
     Mapped made = mapped(type, parameters, place);
     made.material.name = name;
-    named_.define(name, add(std::move(made.material), made.holes));
+    named_.define(name, add(std::move(made)));
 }
 
 uint32_t Materials::named(const std::string& name, const Place& place) {
@@ -216,7 +226,7 @@ uint32_t Materials::emitter(uint32_t surface, const vec3& radiance, bool two_sid
     m.finish = Finish{};
     m.finish->diffuse = 0;
     m.finish->ambient = radiance;
-    return add(std::move(m));
+    return add({std::move(m)});
 }
 
 } // namespace ovc::pbrt

@@ -41,17 +41,21 @@ private:
     struct Mapped {
         Material material;
         uint32_t holes = kNoTexture;
+        uint32_t mixes = 0; // that it is made of
     };
 
     Mapped mapped(const std::string& type, const Parameters& parameters, const Place& place);
-    Material mix(const Parameters& parameters, const Place& place);
-    uint32_t add(Material material, uint32_t holes = kNoTexture);
+    Mapped mix(const Parameters& parameters, const Place& place);
+    Material mixed(const Material& a, const Material& b, const Parameters& parameters,
+                   const Place& place);
+    uint32_t add(Mapped made);
     bool is_on_uv(const Material& material) const;
 
     Textures& textures_;
     Diagnostics& diagnostics_;
     std::vector<Material> all_{Material{"matte", vec3(0.5f)}}; // the first before any Material
     std::vector<uint32_t> holes_{kNoTexture};                  // of each material
+    std::vector<uint32_t> mixes_{0};                           // that each is made of
     std::vector<bool> wants_uv_{false};
     ScopedNames<uint32_t> named_;
     std::unordered_multimap<std::string, uint32_t> by_key_; // indices into all_, to find equals

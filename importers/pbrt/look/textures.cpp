@@ -46,7 +46,11 @@ void Textures::define(const std::string& name, TextureRequest request) {
         if (const Definition* const part = find(p, request.is_float || takes_floats(p.name))) {
             definition.is_pattern = definition.is_pattern || part->is_pattern;
             definition.parts[p.name] = size_t(part - definitions_.data());
+            definition.count += part->count;
         }
+    if (definition.count > kMaxCombined)
+        diagnostics_.fail(request.place,
+                          fmt::format("found a texture of more than {} others", kMaxCombined));
     if (is_plain(request.type))
         tell_left_over(request.parameters, "textures", request.type, diagnostics_);
     definition.request = std::move(request);

@@ -15,6 +15,10 @@
 
 namespace ovc::pbrt {
 
+/// The max number of textures, or of mixes of materials, that are evaluated for one: they stand in
+/// each other, and those that name another twice double their cost each time.
+inline constexpr uint32_t kMaxCombined = 1000;
+
 /// The contents of a Texture directive.
 struct TextureRequest {
     std::string type; // its class, "scale"
@@ -72,6 +76,7 @@ private:
         vec3 mean{0};
         bool is_pattern = false;
         std::map<std::string, size_t, std::less<>> parts; // parameters that name textures
+        uint32_t count = 1; // of textures that are evaluated for it, each as often as it is named
         bool is_made = false;
         std::optional<uint32_t> made; // nothing: it is shown by its mean
     };
