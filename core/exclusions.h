@@ -16,15 +16,13 @@ namespace ovc {
 struct HitPlace {
     double t = -std::numeric_limits<double>::infinity(); // before all hits; so is NaN
     TriangleId id;
-    bool is_certain =
-        false; // it is known to be where the ray hits the triangle, so nobody need test
+    /// It is known to be the place where the ray hits the triangle, so nobody need test that.
+    bool is_certain = false;
 
     HitPlace() = default;
     explicit HitPlace(const Hit& hit) : t(hit.t), id(hit.id) {}
     Hit as_hit() const { return {t, 0, 0, id}; }
 
-    /// Whether the hit lies behind this place, both as rounded.
-    bool is_before(const Hit& hit) const { return t < hit.t || (t == hit.t && id < hit.id); }
     bool is_before_all() const { return !(t > -std::numeric_limits<double>::infinity()); }
 };
 

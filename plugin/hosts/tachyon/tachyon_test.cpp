@@ -72,9 +72,9 @@ protected:
 
 const std::string kBalls = ball(Kind::Flat, "plain", -0.7, -0.2, 0.3, 0.6) +
                            ball(Kind::Smooth, "checker", 0.7, -0.1, 0.4, 0.7) +
-                           ball(Kind::Coloured, "", 0.1, -0.6, -0.8, 0.4);
+                           ball(Kind::Colored, "", 0.1, -0.6, -0.8, 0.4);
 
-TEST_F(TachyonHost, FlatSmoothAndColouredTrianglesLookTheSame) {
+TEST_F(TachyonHost, FlatSmoothAndColoredTrianglesLookTheSame) {
     const std::string said = expect_same(write("balls.dat", scene(kBalls)) + " -numthreads 2");
     EXPECT_THAT(said, HasSubstr("Overcast: 672 triangles in "));
 }
@@ -127,7 +127,7 @@ TEST_F(TachyonHost, OfCoincidingTrianglesTheOneThatTachyonSeesIsSeen) {
 
 // A camera above a sheet whose sides run straight away from it: rays along them pass within a
 // rounding error, where Tachyon's test finds the one triangle or the other, and no ray slips
-// through. Which of the two it sees first is up to its grid, so both have one colour here.
+// through. Which of the two it sees first is up to its grid, so both have one color here.
 TEST_F(TachyonHost, RaysAlongSidesFindATriangleWhereTachyonFindsOne) {
     const auto corner = [](int x, int z) {
         return std::to_string(x) + " " +

@@ -8,7 +8,7 @@
 
 namespace ovc::tachyon {
 
-/// How each kind of triangle (TRI, STRI, VCSTRI) begins; normals and colours follow.
+/// How each kind of triangle (TRI, STRI, VCSTRI) begins; normals and colors follow.
 struct Triangle {
     RT_OBJECT_HEAD
     vector edge2;

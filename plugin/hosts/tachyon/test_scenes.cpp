@@ -27,13 +27,13 @@ static std::string triangle(Kind kind, const std::string& texture, const std::ar
     if (kind != Kind::Flat)
         for (int i = 0; i < 3; ++i)
             text += " N" + std::to_string(i) + words(n[size_t(i)]);
-    if (kind == Kind::Coloured)
+    if (kind == Kind::Colored)
         for (int i = 0; i < 3; ++i)
             text += " C" + std::to_string(i) +
                     words({n[size_t(i)][0] * 0.5 + 0.5, n[size_t(i)][1] * 0.5 + 0.5, 0.5});
     // Behind the texture of a VCSTRI Tachyon reads one more word, whatever it is.
     const std::string look = "\nAMBIENT 0.1 DIFFUSE 0.8 SPECULAR 0.1 OPACITY 1 COLOR";
-    return text + (kind == Kind::Coloured ? look : " " + texture) + "\n";
+    return text + (kind == Kind::Colored ? look : " " + texture) + "\n";
 }
 
 std::string ball(Kind kind, const std::string& texture, double x, double y, double z,

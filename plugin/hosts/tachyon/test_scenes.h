@@ -6,7 +6,7 @@
 
 namespace ovc::tachyon {
 
-enum class Kind { Flat, Smooth, Coloured }; // TRI, STRI, VCSTRI
+enum class Kind { Flat, Smooth, Colored }; // TRI, STRI, VCSTRI
 
 /// A ball of 2 * 16 * 7 triangles, as a part of a scene.
 std::string ball(Kind kind, const std::string& texture, double x, double y, double z,
