@@ -63,18 +63,16 @@ public:
                          ? kMaxDepth
                          : std::min(kMaxDepth, int(8 + 1.3 * std::log2(double(triangles) + 1)))) {}
 
-    /// Appends the subtree over `fragments` in `cell` to `tree`. references: how many references
-    /// the subtree may have where only the heuristic would stop it. All triangles may overlap in a
-    /// plane, and there each cut would pay and double them.
+    /// Appends the subtree over `fragments` in `cell` to `tree`. references: the max number that
+    /// the subtree may have. All triangles may overlap in a plane, and there each cut would pay and
+    /// double them; level 1 would multiply its references by as much as 1.25 at each of 96 levels.
     void build(std::vector<Fragment> fragments, const Box& cell, int depth, double references,
                KdTree& tree, const Fork& fork) const {
         tree.depth = std::max(tree.depth, depth);
         if (fragments.size() >= kWorthIsolating)
             add(options_.progress, 0);
         const Split split = depth < max_depth_ ? choose_split(fragments, cell) : Split{};
-        const bool too_many =
-            !options_.max_leaf_triangles && double(split.below + split.above) > references;
-        if (!split.found() || too_many) {
+        if (!split.found() || double(split.below + split.above) > references) {
             tree.nodes.push_back(
                 KdNode::leaf(uint32_t(tree.references.size()), uint32_t(fragments.size())));
             for (const Fragment& fragment : fragments)

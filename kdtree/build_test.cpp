@@ -4,6 +4,7 @@
 #include "kdtree/build.h"
 
 #include "kdtree/clip.h"
+#include "kdtree/partition.h"
 #include "kdtree/test_soups.h"
 #include "kdtree/traverse.h"
 
@@ -73,7 +74,37 @@ TEST(KdTreeBuild, ReferencesStayBoundedWhereNothingCanBeCut) {
     }
 }
 
-/// Returns large triangles in one flat box: every cut across it pays, and cuts nearly all of them.
+/// Copies far apart, in so large a scene that all triangles of one are alike to its padding.
+TEST(KdTreeBuild, ReferencesOfLevel1StayBoundedWherePaddingHidesTheTriangles) {
+    for (uint64_t seed = 1; seed <= 40; ++seed) {
+        test::Random random(seed);
+        std::vector<dvec3> near, corners;
+        for (int i = 0; i < 100; ++i) {
+            const dvec3 middle = glm::floor(random.point(-4, 5));
+            for (int k = 0; k < 3; ++k)
+                near.push_back(middle + 0.5 * glm::floor(random.point(-4, 5)));
+        }
+        corners = near;
+        for (int place = 0; place < 8; ++place) {
+            const int axis = int(random.below(3));
+            const double far = std::pow(10.0, double(random.below(31)));
+            for (dvec3 corner : near) {
+                corner[axis] += far;
+                corners.push_back(corner);
+            }
+        }
+        Soup soup;
+        soup.chunks.push_back(Chunk::owning_doubles(dvec3(0), std::move(corners)));
+        KdBuildOptions options;
+        options.max_leaf_triangles = 16;
+        Box bounds;
+        const auto triangles = hittable_triangles(soup, nullptr, &bounds);
+        options.padding = 2 * padding_of(bounds);
+        EXPECT_LE(build_kd_tree(soup, options).references.size(), 48 * soup.triangle_count());
+    }
+}
+
+/// The triangles are large, in one flat box: every cut across it pays, and cuts nearly all of them.
 TEST(KdTreeBuild, ReferencesStayBoundedWhereAllOverlapInAPlane) {
     test::Random random(5);
     std::vector<vec3> corners;
