@@ -23,6 +23,11 @@ struct TriangleId {
     auto operator<=>(const TriangleId&) const = default;
 };
 
+/// Where the largest component of a direction is shorter or longer, products of it, or of a t, with
+/// lengths may leave the range of doubles. Exact arithmetic begins such a ray anew
+/// (kdtree/approach.h).
+inline constexpr double kMinWalkedDirection = 0x1p-500, kMaxWalkedDirection = 0x1p500;
+
 /// The points org + t dir with t_min <= t <= t_max. dir need not be of unit length; t counts in its
 /// lengths.
 struct Ray {

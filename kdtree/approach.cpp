@@ -54,14 +54,7 @@ dvec3 main_direction(const dvec3& dir) {
 }
 
 bool is_near(const PreparedRay& p, const Box& bounds) {
-    // Otherwise products of a direction or a t with lengths may leave the range of doubles.
-    const double longest = std::abs(p.ray.dir[p.kz]);
-    if (longest < 0x1p-500 || longest > 0x1p500)
-        return false;
-    for (int axis = 0; axis < 3; ++axis)
-        if (p.ray.dir[axis] != 0 && !std::isfinite(p.inv_dir[axis]))
-            return false;
-    return p.margin(bounds) <= padding_of(bounds);
+    return has_walked_direction(p) && p.margin(bounds) <= padding_of(bounds);
 }
 
 } // namespace

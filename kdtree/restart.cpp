@@ -44,10 +44,8 @@ CellVisit cell_after(const Level1& level1, const PreparedRay& p, double t) {
 } // namespace
 
 bool can_walk(const Level1& level1, const PreparedRay& p) {
-    for (int axis = 0; axis < 3; ++axis)
-        if (p.ray.dir[axis] != 0 && !std::isfinite(p.inv_dir[axis]))
-            return false;
-    return level1.bounds.empty() || p.margin(level1.bounds) <= level1.padding;
+    return has_walked_direction(p) &&
+           (level1.bounds.empty() || p.margin(level1.bounds) <= level1.padding);
 }
 
 Visit next_leaf_in_cell(const Level1& level1, const PreparedRay& p, RayPosition& position) {

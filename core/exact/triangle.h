@@ -62,6 +62,15 @@ struct PreparedRay {
     }
 };
 
+/// Whether doubles can tell where the ray meets planes across the axes.
+inline bool has_walked_direction(const PreparedRay& p) {
+    const double longest = std::abs(p.ray.dir[p.kz]);
+    for (int axis = 0; axis < 3; ++axis)
+        if (p.ray.dir[axis] != 0 && !std::isfinite(p.inv_dir[axis]))
+            return false;
+    return longest >= kMinWalkedDirection && longest <= kMaxWalkedDirection;
+}
+
 /// A hit of one triangle.
 struct Candidate {
     static constexpr uint32_t kAllCorners = 7;
@@ -142,7 +151,8 @@ std::optional<Candidate> candidate(const PreparedRay& p, const Triangle& triangl
                             12 * u * std::max(std::abs(z_min), std::abs(z_max)) + underflow) *
                                std::abs(p.sz) +
                            0x1p-1020;
-    if (t + t_error < p.ray.t_min || t - t_error > p.ray.t_max)
+    const bool outside = t + t_error < p.ray.t_min || t - t_error > p.ray.t_max;
+    if (outside && std::isfinite(t)) // else the t may be one of doubles all the same
         return std::nullopt;
     if (!(t - t_error >= p.ray.t_min && t + t_error <= p.ray.t_max))
         return in_doubt(p, triangle, id);

@@ -278,5 +278,22 @@ TEST(Reference, EqualBitsForTheSameTriangleWhateverItsCornersOrder) {
     }
 }
 
+/// Rounding takes some of these t beyond all doubles, on the way to the largest one.
+TEST(Triangle, IsHitAtTheLargestDouble) {
+    constexpr double kLargest = std::numeric_limits<double>::max();
+    test::Random random(3);
+    for (int i = 0; i < 1000; ++i) {
+        const double z = std::ldexp(kLargest, -900);
+        Triangle triangle;
+        for (int k = 0; k < 3; ++k)
+            triangle[k] = dvec3(z * std::cos(2.0944 * k) * random(0.5, 1),
+                                z * std::sin(2.0944 * k) * random(0.5, 1), z);
+        const PreparedRay p(Ray{dvec3(0), 0, dvec3(0, 0, std::ldexp(1.0, -900))});
+        const std::optional<Hit> hit = intersect(p, triangle, {0, 0});
+        ASSERT_TRUE(hit) << i;
+        EXPECT_EQ(hit->t, kLargest) << i;
+    }
+}
+
 } // namespace
 } // namespace ovc

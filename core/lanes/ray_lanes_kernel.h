@@ -53,9 +53,12 @@ template <class V>
 OVC_INLINE LanesAhead look_ahead(const LanesScene& scene, const RaysOf<V>& rays) {
     constexpr double kMax = std::numeric_limits<double>::max();
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    MaskOf<V> valid = are_finite(rays.t_min) & (rays.t_min <= rays.t_max) &
-                      (rays.longest() >= all_lanes<V>(1e-300));
-    MaskOf<V> walks = ~MaskOf<V>{}, outside{};
+    const V longest = rays.longest();
+    MaskOf<V> valid =
+        are_finite(rays.t_min) & (rays.t_min <= rays.t_max) & (longest >= all_lanes<V>(1e-300));
+    MaskOf<V> walks = (longest >= all_lanes<V>(kMinWalkedDirection)) &
+                      (longest <= all_lanes<V>(kMaxWalkedDirection));
+    MaskOf<V> outside{};
     V reach{}, enter = rays.from, exit = smaller(all_lanes<V>(kMax), rays.t_max);
     for (int axis = 0; axis < 3; ++axis) {
         const V org = rays.org[axis], dir = rays.dir[axis], inv_dir = 1.0 / dir;

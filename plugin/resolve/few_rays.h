@@ -4,7 +4,6 @@
 #pragma once
 
 #include "gpu/walk/float_walk.h"
-#include "kdtree/approach.h"
 #include "kdtree/restart.h"
 #include "plugin/resolve/resolve.h"
 #include "plugin/structure/structure.h"
@@ -97,9 +96,7 @@ private:
         const Leaf scene = top.scene_in(scene_.level1.bounds);
         if (top.portals.empty())
             return take(0, 0, local_ray(scene, p_.ray, skip_, kAnyHit, unused));
-        // Doubles walk the tree above the parts along the ray itself, not beside the scene.
-        const bool is_near = !Approach(p_, scene_.level1.bounds).is_moved();
-        return is_near && p_.after.is_before_all() && walk_parts(scene);
+        return p_.after.is_before_all() && walk_parts(scene);
     }
 
     bool walk_parts(const Leaf& scene) {

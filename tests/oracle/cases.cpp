@@ -329,11 +329,13 @@ std::vector<Mesh> shared_instances(Random& random) {
     return {mesh};
 }
 
-/// Makes instances so far apart that most are out of reach of a ray that barely moves.
+/// Makes instances so far apart that many are out of reach of a ray that barely moves: up to 10 to
+/// the power of kMaxPower.
+template <int kMaxPower>
 std::vector<Mesh> spread_instances(Random& random) {
     std::vector<Mesh> meshes = shared_instances(random);
     for (std::array<double, 12>& place : meshes[0].instances)
-        place[3 + 4 * random.below(3)] = std::pow(10.0, double(random.below(31)));
+        place[3 + 4 * random.below(3)] = std::pow(10.0, double(random.below(kMaxPower + 1)));
     return meshes;
 }
 
@@ -357,8 +359,9 @@ constexpr Case kCases[] = {
     {"instances", instances, aimed},
     {"instances, ends of rays", instances, with_ends},
     {"shared instances", shared_instances, aimed},
-    {"spread instances", spread_instances, aimed},
-    {"spread instances, barely moving", spread_instances, barely_moving},
+    {"spread instances", spread_instances<30>, aimed},
+    {"spread instances, barely moving", spread_instances<30>, barely_moving},
+    {"spread instances, barely reached", spread_instances<12>, barely_moving},
 };
 
 } // namespace
