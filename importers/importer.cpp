@@ -5,6 +5,7 @@
 #include "core/text/lower_case.h"
 #include "core/text/suggestion.h"
 #include "importers/readers.h"
+#include "importers/scene_file/sound_textures.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -69,7 +70,7 @@ Error unknown_extension(const std::filesystem::path& path, const std::string& ex
 
 } // namespace
 
-Result<Scene> load(const std::filesystem::path& path, const ImportOptions& options) try {
+static Result<Scene> read(const std::filesystem::path& path, const ImportOptions& options) {
     const std::string extension = extension_of(without_gz(lower_name(path)));
     if (const Format* format = format_of(extension))
         return format->read(path, options);
@@ -79,6 +80,16 @@ Result<Scene> load(const std::filesystem::path& path, const ImportOptions& optio
     if (!extension.empty() && assimp_reads(extension))
         return read_assimp(path, options);
     return unknown_extension(path, extension, /* to_write= */ false);
+}
+
+Result<Scene> load(const std::filesystem::path& path, const ImportOptions& options) try {
+    Result<Scene> scene = read(path, options);
+    if (scene && !has_sound_textures(*scene))
+        return Error{fmt::format("{}: the textures cannot be evaluated: they have no meaning, lie "
+                                 "more than {} deep in each other, or take more than {} steps for "
+                                 "one color",
+                                 path.string(), kMaxTextureDepth, uint64_t(kMaxTextureSteps))};
+    return scene;
 } catch (const std::bad_alloc&) {
     return Error{fmt::format("{}: found a model larger than the memory", path.string())};
 }

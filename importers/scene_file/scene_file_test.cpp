@@ -4,6 +4,7 @@
 #include "importers/scene_file/scene_file.h"
 
 #include "core/file/value_bytes.h"
+#include "importers/file/picture_path.h"
 #include "importers/readers.h"
 #include "importers/scene_file/scene_fields.h"
 #include "importers/test_files.h"
@@ -230,6 +231,50 @@ TEST(SceneFile, DamageBehindRightChecksumsIsAnErrorOrASoundScene) {
             byte = uint8_t(random());
         fuzz_ovc(orders.data(), orders.size());
     }
+}
+
+/// Whoever evaluates a material goes down through those below it and through what it mixes.
+TEST(SceneFile, CoatsTooDeepInEachOtherAreAnError) {
+    const TestFolder folder;
+    const auto is_read = [&](size_t materials, bool mix) {
+        Scene scene;
+        for (size_t m = 0; m < materials; ++m) {
+            Material material;
+            if (m > 0 && mix) {
+                Texture texture;
+                texture.stops = {{0, {}, uint32_t(m - 1)}, {1, {}, 0}};
+                material.mix = placed_in_world(uint32_t(scene.textures.size()));
+                scene.textures.push_back(std::move(texture));
+            } else if (m > 0)
+                material.under = uint32_t(m - 1);
+            scene.materials.push_back(std::move(material));
+        }
+        EXPECT_TRUE(save(scene, folder / "a.ovc"));
+        return bool(load(folder / "a.ovc"));
+    };
+    for (const bool mix : {false, true}) {
+        EXPECT_TRUE(is_read(500, mix)) << mix;
+        EXPECT_FALSE(is_read(20000, mix)) << mix;
+    }
+}
+
+/// What is below a mix of materials is seen once, whatever part of the mix is seen.
+TEST(SceneFile, LayersOfManyMixesAreFine) {
+    Scene scene;
+    scene.materials.resize(10);
+    for (uint32_t layer = 0; layer < 10; ++layer) {
+        Texture texture;
+        for (uint32_t i = 0; i < 10; ++i)
+            texture.stops.push_back({i / 9.0, {}, i});
+        Material material;
+        material.mix = placed_in_world(layer);
+        material.under = layer == 0 ? kNone : uint32_t(scene.materials.size() - 1);
+        scene.textures.push_back(std::move(texture));
+        scene.materials.push_back(std::move(material));
+    }
+    const TestFolder folder;
+    ASSERT_TRUE(save(scene, folder / "a.ovc"));
+    EXPECT_TRUE(load(folder / "a.ovc"));
 }
 
 TEST(SceneFile, ErrorsNameTheFile) {

@@ -164,6 +164,39 @@ bool has_sound_textures(const Scene& scene, const Material& material, const IsCo
                              scene.textures[material.mix->texture].kind == TextureKind::Pattern);
 }
 
+/// Returns whether materials are made of earlier ones, which lie at most kMaxTextureDepth deep in
+/// each other, and the color of one takes at most kMaxTextureSteps steps. The materials' textures
+/// are sound; of_textures: what those need.
+inline bool has_sound_coats(const Scene& scene, const TextureNeeds& of_textures) {
+    std::vector<double> work(scene.materials.size(), 1);
+    std::vector<uint32_t> depth(scene.materials.size(), 1);
+    for (size_t m = 0; m < scene.materials.size(); ++m) {
+        const Material& material = scene.materials[m];
+        const auto take = [&](uint32_t other) {
+            if (other >= m)
+                return false;
+            work[m] += work[other];
+            depth[m] = std::max(depth[m], depth[other] + 1);
+            return true;
+        };
+        if (material.texture)
+            work[m] += of_textures.work[material.texture->texture];
+        if (material.mix) {
+            work[m] += of_textures.work[material.mix->texture];
+            for (const TextureStop& stop : scene.textures[material.mix->texture].stops)
+                if (!take(stop.texture))
+                    return false;
+        }
+        if (material.under != kNone && !take(material.under))
+            return false;
+        if (material.inside != kNone && material.inside >= m)
+            return false;
+        if (!(work[m] <= kMaxTextureSteps) || depth[m] > kMaxTextureDepth)
+            return false;
+    }
+    return true;
+}
+
 /// Returns whether patterns can be evaluated, textures are made of earlier ones and materials of
 /// earlier ones, and one color takes at most kMaxTextureSteps steps.
 inline bool has_sound_textures(const Scene& scene) {
@@ -171,33 +204,17 @@ inline bool has_sound_textures(const Scene& scene) {
     for (const Material& material : scene.materials)
         if (material.mix && material.mix->texture < mixes.size())
             mixes[material.mix->texture] = true;
-    if (!needs_of_textures(scene, mixes).sound || !has_sound_bumps(scene))
+    const TextureNeeds needs = needs_of_textures(scene, mixes);
+    if (!needs.sound || !has_sound_bumps(scene))
         return false;
     const auto is_color = [&](uint32_t texture) {
         return texture < mixes.size() && !mixes[texture];
     };
-    std::vector<double> layers(scene.materials.size(), 1);
-    for (size_t m = 0; m < scene.materials.size(); ++m) {
-        const Material& material = scene.materials[m];
+    for (const Material& material : scene.materials)
         if (!has_sound_textures(scene, material, is_color))
             return false;
-        for (size_t i = 0; material.mix && i < scene.textures[material.mix->texture].stops.size();
-             ++i) {
-            const uint32_t part = scene.textures[material.mix->texture].stops[i].texture;
-            if (part >= m)
-                return false;
-            layers[m] += layers[part];
-        }
-        if (material.inside != kNone && material.inside >= m)
-            return false;
-        if (material.under != kNone) {
-            if (material.under >= m)
-                return false;
-            layers[m] *= 1 + layers[material.under];
-        }
-        if (!(layers[m] <= kMaxTextureSteps))
-            return false;
-    }
+    if (!has_sound_coats(scene, needs))
+        return false;
     const auto is_plain = [](const TextureStop& stop) { return stop.texture == kNoTexture; };
     for (const Rainbow& rainbow : scene.background.rainbows)
         if (rainbow.colors.empty() || !std::ranges::all_of(rainbow.colors, is_plain))

@@ -137,8 +137,8 @@ void parse_refused(Reader& reader, Object& object) {
     skip_block(reader);
 }
 
-void add_texture(Object& object, const Texture& texture) {
-    object.texture = object.texture ? layered(texture, *object.texture) : texture;
+void add_texture(Reader& reader, Object& object, const Texture& texture) {
+    object.texture = object.texture ? layered(reader, texture, *object.texture) : texture;
 }
 
 /// Returns the object's own texture, which its pigment or finish changes.
@@ -150,7 +150,7 @@ Texture& own_texture(Reader& reader, Object& object) {
 
 bool parse_look(Reader& reader, Object& object) {
     if (reader.take("texture"))
-        add_texture(object, parse_texture(reader));
+        add_texture(reader, object, parse_texture(reader));
     else if (reader.take("pigment")) {
         Texture& texture = own_texture(reader, object);
         texture.pigment = parse_pigment(reader, texture.pigment);
@@ -163,7 +163,7 @@ bool parse_look(Reader& reader, Object& object) {
     } else if (reader.take("material")) {
         const Material material = parse_material(reader);
         if (material.texture)
-            add_texture(object, *material.texture);
+            add_texture(reader, object, *material.texture);
         if (material.inside)
             object.inside_texture = material.inside;
         if (material.interior)
@@ -290,7 +290,7 @@ void parse_modifiers(Reader& reader, Object& object) {
         } else if (reader.take("interior_texture"))
             object.inside_texture = parse_texture(reader);
         else if (const auto texture = take_named_if<Texture>(reader))
-            add_texture(object, *texture); // old scenes name it without texture { }
+            add_texture(reader, object, *texture); // old scenes name it without texture { }
         else if (starts_color(reader.peek()))
             parse_color(reader); // of old scenes, which povray ignores too
         else if (!take_left_out(reader, {"cutaway_textures"}, "an object", object.notes) &&

@@ -81,7 +81,7 @@ Value parse_layers(Reader& reader) {
     Texture texture = parse_texture(reader);
     while (reader.peek_operator().is("texture")) {
         reader.next();
-        texture = layered(parse_texture(reader), texture);
+        texture = layered(reader, parse_texture(reader), texture);
     }
     return texture;
 }

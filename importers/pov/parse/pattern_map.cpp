@@ -171,25 +171,60 @@ ColorMap parse_map(Reader& reader, MapOf of) {
     return made;
 }
 
-static uint64_t parts_of(const Pigment& pigment) {
-    return pigment.pattern ? pigment.pattern->parts : 0;
+/// How many patterns there are, and how deep they lie in each other.
+struct PatternCount {
+    uint64_t parts = 0, depth = 0;
+
+    void add(const PatternCount& other) {
+        parts += other.parts;
+        depth = std::max(depth, other.depth);
+    }
+};
+
+static PatternCount count_of(const Pigment& pigment) {
+    return pigment.pattern ? PatternCount{pigment.pattern->parts, pigment.pattern->depth}
+                           : PatternCount{};
 }
 
-static uint64_t parts_of(const Texture& texture) {
-    return parts_of(texture.pigment) + parts_of(texture.mix) + parts_of(texture.normal.pattern) +
-           (texture.under ? parts_of(*texture.under) : 0);
+static PatternCount count_of(const Texture& texture) {
+    PatternCount count;
+    if (texture.under) {
+        count = count_of(*texture.under);
+        ++count.depth;
+    }
+    for (const Pigment* const part : {&texture.pigment, &texture.mix, &texture.normal.pattern})
+        count.add(count_of(*part));
+    return count;
 }
 
-void count_parts(Reader& reader, PatternMap& map) {
+static void check(Reader& reader, const PatternCount& count) {
     constexpr uint64_t kMaxParts = 100'000; // far beyond what real scenes mix
-    map.parts = 1;
-    for (const MapStop& stop : map.stops)
-        map.parts += parts_of(stop.pigment) + (stop.texture ? parts_of(*stop.texture) : 0) +
-                     (stop.normal ? parts_of(stop.normal->pattern) : 0);
-    if (map.parts > kMaxParts)
+    if (count.parts > kMaxParts)
         reader.fail(reader.place(), fmt::format("found a mix of more than {} patterns, counting "
                                                 "those within each other",
                                                 kMaxParts));
+    if (count.depth > reader.limits.depth)
+        reader.fail(reader.place(), fmt::format("found patterns or layers more than {} deep in "
+                                                "each other",
+                                                reader.limits.depth));
+}
+
+void count_parts(Reader& reader, PatternMap& map) {
+    PatternCount count;
+    for (const MapStop& stop : map.stops) {
+        count.add(count_of(stop.pigment));
+        if (stop.texture)
+            count.add(count_of(*stop.texture));
+        if (stop.normal)
+            count.add(count_of(stop.normal->pattern));
+    }
+    map.parts = ++count.parts;
+    map.depth = ++count.depth;
+    check(reader, count);
+}
+
+void check_parts(Reader& reader, const Texture& texture) {
+    check(reader, count_of(texture));
 }
 
 Color average_of(const std::vector<MapStop>& stops) {

@@ -21,9 +21,13 @@ std::vector<MapStop> parse_entries(Reader& reader, MapOf of);
 /// or null.
 std::vector<MapStop> default_stops(const Token* word, Pattern::Kind kind);
 
-/// Sets how many parts the map has, once it has its stops. Throws ParseError beyond a limit: a
-/// texture that mixes one that mixes one with itself has twice as many at each step.
+/// Sets how many parts the map has and how deep they lie, once it has its stops. Throws ParseError
+/// beyond a limit: a texture that mixes one that mixes one with itself has twice as many at each
+/// step, and whoever follows patterns into each other needs room on the stack.
 void count_parts(Reader& reader, PatternMap& map);
+
+/// Throws ParseError where the texture with its layers is beyond these limits.
+void check_parts(Reader& reader, const Texture& texture);
 
 /// Returns the average of the stops over [0, 1], a middle grey where there are none.
 Color average_of(const std::vector<MapStop>& stops);

@@ -438,6 +438,40 @@ TEST(PovPattern, HasOnlySoManyParts) {
     }
 }
 
+TEST(PovPattern, LiesOnlySoDeep) {
+    const std::string names = "#declare T = texture { pigment { rgbt 0.9 } } "
+                              "#declare P = pigment { rgb 1 } #declare N = normal { bumps } ";
+    for (const char* step :
+         {"#declare P = pigment { gradient x pigment_map { [0 P][1 rgb 0] } }",
+          "#declare N = normal { gradient x normal_map { [0 N][1 bumps 0] } }",
+          "#declare T = texture { gradient x texture_map { [0 T][1 pigment { rgb 0 }] } }",
+          "#declare T = texture { T } texture { pigment { rgbt 0.9 } }",
+          "#declare T = texture { pigment { rgbt 0.9 } } texture { T }",
+          "#declare T = texture { T } texture { T }"}) {
+        const auto scene =
+            parsed_scene(names + "#for (I, 1, 20000) " + step +
+                         " #end sphere { 0, 1 texture { T } pigment { P } normal { N } }");
+        ASSERT_FALSE(scene) << step;
+        EXPECT_NE(
+            scene.error().message.find("found patterns or layers more than 400 deep in each other"),
+            std::string::npos)
+            << scene.error().message;
+    }
+}
+
+/// Each names the one before twice, and is made only once.
+TEST(PovPattern, IsRefusedWhereFunctionsTakeTooManySteps) {
+    const TestFolder folder;
+    const auto scene = load(folder.write(
+        "a.pov", "#declare P = pigment { gradient x } #for (I, 1, 40) #declare P = pigment { "
+                 "pigment_pattern { P } pigment_map { [0 P][1 rgb 1] } } #end "
+                 "sphere { 0, 1 pigment { P } }"));
+    ASSERT_FALSE(scene);
+    EXPECT_EQ(folder.plain(scene.error().message),
+              "a.pov: the textures cannot be evaluated: they have no meaning, lie more than 500 "
+              "deep in each other, or take more than 1000000 steps for one color");
+}
+
 TEST(PovPattern, MixesTexturesOnly) {
     const Result<Scene> scene =
         parsed_scene("box { 0, 1 texture { gradient x color_map { [0 rgb 0] [1 rgb 1] } } }");

@@ -252,8 +252,9 @@ Material parse_material(Reader& reader) {
         if (const auto named_material = take_named_if<Material>(reader))
             material = *named_material;
         else if (reader.take("texture"))
-            material.texture = material.texture ? layered(parse_texture(reader), *material.texture)
-                                                : parse_texture(reader);
+            material.texture = material.texture
+                                   ? layered(reader, parse_texture(reader), *material.texture)
+                                   : parse_texture(reader);
         else if (reader.take("interior"))
             material.interior = parse_interior(reader, material.interior.value_or(Interior{}));
         else if (reader.take("interior_texture"))
@@ -438,14 +439,20 @@ void place(Interior& interior, const dmat4& by) {
             density.placed = by * density.placed;
 }
 
-Texture layered(const Texture& upper, const Texture& lower) {
+static Texture on_top(const Texture& upper, const Texture& lower) {
     Texture both = upper;
     both.pigment.holes.reset(); // the lower layer fills them
     if (!upper.under) {
         both.under = std::make_shared<const Texture>(lower);
         return both;
     }
-    both.under = std::make_shared<const Texture>(layered(*upper.under, lower));
+    both.under = std::make_shared<const Texture>(on_top(*upper.under, lower));
+    return both;
+}
+
+Texture layered(Reader& reader, const Texture& upper, const Texture& lower) {
+    Texture both = on_top(upper, lower);
+    check_parts(reader, both);
     return both;
 }
 

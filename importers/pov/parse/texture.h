@@ -21,8 +21,8 @@ Normal parse_normal_parts(Reader& reader, const Normal& base, char end);
 /// Reads the { … } of a slope_map.
 std::vector<SlopeStop> parse_slope_map(Reader& reader);
 
-/// Returns `upper`, with its layers, on top of `lower`.
-Texture layered(const Texture& upper, const Texture& lower);
+/// Returns `upper`, with its layers, on top of `lower`. Throws ParseError where that is too many.
+Texture layered(Reader& reader, const Texture& upper, const Texture& lower);
 /// Returns the texture that the map of textures mixes.
 Texture mix_of(PatternPtr map);
 /// Returns the texture with all its layers, and what it mixes, on texture coordinates.

@@ -146,6 +146,8 @@ struct PatternMap {
     /// How many patterns there are in this one, with those of its stops and of their stops. Each is
     /// evaluated as often as it comes.
     uint64_t parts = 1;
+    /// How deep patterns and layers lie in each other, this one counted.
+    uint64_t depth = 1;
     /// The pattern is of what corners of a mesh have in the place of texture coordinates, whatever
     /// the texture's transformations.
     bool on_corners = false;
