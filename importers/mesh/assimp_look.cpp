@@ -383,6 +383,8 @@ uint64_t add_lights(const aiScene& found, Scene& scene) {
             scene.lights.push_back(*light);
         else
             ++left_out;
+    if (!scene.lights.empty())
+        scene.background = {vec3(0), vec3(0)}; // ours is for scenes that have no light
     return left_out;
 }
 

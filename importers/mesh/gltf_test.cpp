@@ -201,6 +201,9 @@ TEST(Gltf, PunctualLightsStandWhereTheirNodesDo) {
         "\"light\":2}}}",
         "0,1,2,3"));
     ASSERT_EQ(read.scene.lights.size(), 3u);
+    EXPECT_EQ(read.scene.background.horizon, vec3(0));
+    EXPECT_EQ(read.scene.background.zenith, vec3(0));
+    EXPECT_EQ(read_gltf(gltf_of("{}")).scene.background.zenith, Background{}.zenith);
     const Light& point = read.scene.lights[0];
     EXPECT_EQ(point.position, dvec3(1, 2, 3));
     // Its intensity over the square of the distance.
