@@ -306,7 +306,7 @@ AssimpMaterial Looks::add(const aiMaterial& source) {
     const bool is_gltf = source.Get(AI_MATKEY_METALLIC_FACTOR, metallic) == AI_SUCCESS;
     if (is_gltf && material.transmission == 0)
         add_optics(source, material);
-    else if (is_gltf && !material.texture && emission_of(source) != vec3(0)) {
+    else if (is_gltf && emission_of(source) != vec3(0)) {
         material.optics = clear_optics(material);
         add_emission(source, emission_of(source), material);
     }

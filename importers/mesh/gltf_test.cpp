@@ -184,6 +184,13 @@ TEST(Gltf, WhatLetsLightThroughMaySendSomeOut) {
     EXPECT_EQ(optics.through, vec3(0.75f));
     EXPECT_EQ(optics.diffuse, 0.25f * vec3(0.5f, 1, 1));
     EXPECT_EQ(optics.boundary, Optics::Boundary::None);
+    const ReadGltf pane = read_gltf(
+        gltf_of("{\"emissiveFactor\":[1,0.5,0],\"pbrMetallicRoughness\":{\"baseColorTexture\":{"
+                "\"index\":0}},\"extensions\":{\"KHR_materials_transmission\":{"
+                "\"transmissionFactor\":0.5}}}"));
+    ASSERT_TRUE(pane.material().texture && pane.material().optics);
+    EXPECT_EQ(pane.material().optics->emission, vec3(1, 0.5f, 0));
+    EXPECT_EQ(pane.material().optics->through, vec3(0.5f));
 }
 
 TEST(Gltf, PunctualLightsStandWhereTheirNodesDo) {

@@ -303,6 +303,17 @@ TEST(Bsdf, GlassBesidePaintLosesNothing) {
         }
 }
 
+TEST(Bsdf, ATextureHasTheShareThatIsLeft) {
+    Material m = with_optics(Boundary::None, vec3(0), vec3(0), 0, vec3(0.75f));
+    m.texture = PlacedTexture{};
+    m.transmission = 0.75f;
+    SurfacePoint seen = seen_from(m, way(1, 0));
+    seen.color = {1, 0.5f, 0};
+    EXPECT_EQ(Bsdf(seen).albedo(), vec3(1, 0.875f, 0.75f));
+    m.finish.emplace(); // its parts are added up
+    EXPECT_EQ(Bsdf(seen).evaluate(way(1, 0)), seen.color * float(std::numbers::inv_pi));
+}
+
 TEST(Bsdf, APaneReflectsWithBothItsSides) {
     const Material pane = with_optics(Boundary::Thin, vec3(0), vec3(1), 0, vec3(1), 1.5);
     const Bsdf bsdf(seen_from(pane, way(1, 0)));

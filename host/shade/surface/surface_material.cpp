@@ -40,8 +40,8 @@ static constexpr float kPlainReflection = 0.04f;
 
 Optics optics_at(const SurfacePoint& surface) {
     Optics optics = *surface.material->optics;
-    if (surface.material->texture)
-        optics.diffuse = surface.color;
+    if (const Material& material = *surface.material; material.texture)
+        optics.diffuse = (material.finish ? 1 : 1 - material.transmission) * surface.color;
     if (const float metal = surface.maps.metal; metal >= 0) {
         optics.boundary = Optics::Boundary::Metal;
         optics.reflection = glm::mix(vec3(kPlainReflection), surface.color, metal);
