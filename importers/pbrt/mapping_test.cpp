@@ -92,6 +92,9 @@ TEST(PbrtMapping, MirrorGlassMetalAndHoles) {
     EXPECT_NEAR(uber.filter.x, 0.75f, 1e-6f);
     EXPECT_EQ(uber.ior, 1);
     EXPECT_TRUE(scene_of(std::string("Material \"interface\"") + kMesh).meshes.empty());
+    const std::string lamp = "AreaLightSource \"diffuse\" Material \"interface\"";
+    EXPECT_TRUE(scene_of("Film \"rgb\" WorldBegin " + lamp + kMesh).meshes.empty());
+    EXPECT_EQ(scene_of("WorldBegin " + lamp + kMesh).meshes.size(), 1u) << "earlier versions";
 }
 
 TEST(PbrtMapping, SpectraBecomeTheirColors) {

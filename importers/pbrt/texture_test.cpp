@@ -323,6 +323,24 @@ TEST(PbrtTexture, MaterialsTakeColorsReflectionsHolesAndBumps) {
     const Cutout& cutout = uber.scene.cutouts[uber.scene.meshes[0].cutout];
     EXPECT_TRUE(cutout.partial);
     EXPECT_TRUE(uber.scene.textures[cutout.texture].image);
+    const auto mix_with = [&](const std::string& other) {
+        return read_textured(pictures +
+                             "MakeNamedMaterial \"a\" \"string type\" \"uber\" \"texture opacity\" "
+                             "\"f\" MakeNamedMaterial \"b\" \"string type\" " +
+                             other +
+                             " Material \"mix\" \"string materials\" [\"a\" \"b\"] "
+                             "\"float amount\" 0.25" +
+                             kTexturedTriangle);
+    };
+    const TexturedScene same = mix_with("\"uber\" \"rgb Kd\" [1 0 0] \"texture opacity\" \"f\"");
+    ASSERT_NE(same.scene.meshes[0].cutout, kNone);
+    EXPECT_TRUE(same.scene.textures[same.scene.cutouts[0].texture].image);
+    const TexturedScene one = mix_with("\"matte\"");
+    ASSERT_NE(one.scene.meshes[0].cutout, kNone);
+    const Texture& holes = one.scene.textures[one.scene.cutouts[0].texture];
+    EXPECT_EQ(holes.kind, TextureKind::Mix);
+    EXPECT_EQ(holes.stops[1].color.rgb, vec3(1));
+    EXPECT_EQ(holes.stops[2].color.rgb, vec3(0.25f));
     const TexturedScene normals = read_textured(
         "Material \"diffuse\" \"string normalmap\" \"n.png\"" + std::string(kTexturedTriangle));
     ASSERT_TRUE(normals.material().normal_map);

@@ -43,8 +43,15 @@ bool Interpreter::shape() {
 }
 
 std::optional<Sight> Interpreter::sight_of(const Parameters& parameters) {
-    if (!state_.now.emission && is_invisible(materials_.all()[state_.now.material]))
-        return std::nullopt;
+    if (is_invisible(materials_.all()[state_.now.material])) {
+        if (!state_.now.emission)
+            return std::nullopt;
+        if (lights_.is_v4()) { // it says the same
+            diagnostics_.approximate("emitting interface", place_,
+                                     "shapes of the material 'interface' emit no light");
+            return std::nullopt;
+        }
+    }
     const Alpha alpha = alphas_.of(parameters, "alpha");
     if (alpha.is_zero)
         return std::nullopt;

@@ -26,6 +26,7 @@ public:
     /// The lights that follow are those of v4, whose spectra tell no strength: each counts as if
     /// its luminance were 1.
     void read_as_v4() { is_v4_ = true; }
+    bool is_v4() const { return is_v4_; }
     /// Returns false, after a warning, for a type that is not known.
     bool add(const std::string& type, const Parameters& parameters, const dmat4& to_world,
              const Place& place);

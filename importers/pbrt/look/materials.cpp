@@ -153,7 +153,23 @@ Materials::Mapped Materials::mix(const Parameters& parameters, const Place& plac
     const uint32_t mixes = 1 + mixes_[a] + mixes_[b];
     if (mixes > kMaxCombined)
         diagnostics_.fail(place, fmt::format("found a mix of more than {} others", kMaxCombined));
-    return {mixed(all_[a], all_[b], parameters, place), kNoTexture, mixes};
+    const Material material = mixed(all_[a], all_[b], parameters, place);
+    return {material, mixed_holes(holes_[a], holes_[b], parameters, place), mixes};
+}
+
+/// Each part has its own holes in pbrt, by chance; here they lie in both alike.
+uint32_t Materials::mixed_holes(uint32_t a, uint32_t b, const Parameters& parameters,
+                                const Place& place) {
+    if (a == b)
+        return a;
+    diagnostics_.approximate("mix of holes", place,
+                             "of a mix of two materials with different holes, both are seen alike "
+                             "where there is something");
+    const auto opacity = [](uint32_t holes) { return TextureStop{0, {vec3(1)}, holes}; };
+    const auto share = textures_.texture(parameters, "amount");
+    const TextureStop amount{
+        0, {textures_.color(parameters, "amount", vec3(0.5f))}, share.value_or(kNoTexture)};
+    return textures_.mix(opacity(a), opacity(b), amount);
 }
 
 /// Mixes part by part. What cannot be mixed is that of the only material that has a boundary, or

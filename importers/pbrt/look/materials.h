@@ -48,6 +48,7 @@ private:
     Mapped mix(const Parameters& parameters, const Place& place);
     Material mixed(const Material& a, const Material& b, const Parameters& parameters,
                    const Place& place);
+    uint32_t mixed_holes(uint32_t a, uint32_t b, const Parameters& parameters, const Place& place);
     uint32_t add(Mapped made);
     bool is_on_uv(const Material& material) const;
 
