@@ -350,6 +350,26 @@ struct ImageSize {
     uint32_t height = 512;
 };
 
+/// A part of a larger picture, at `left` and `top` pixels from its left and upper edge.
+struct PicturePart {
+    ImageSize picture;
+    uint32_t left = 0;
+    uint32_t top = 0;
+    ImageSize size;
+
+    /// Returns the number in the picture of a pixel of the part, both counted row by row. Random
+    /// numbers go by it, so that a part has the noise of the whole picture.
+    uint32_t number_in_picture(uint32_t pixel) const {
+        return (top + pixel / size.width) * picture.width + left + pixel % size.width;
+    }
+
+    bool lies_in_picture() const {
+        return size.width >= 1 && size.height >= 1 &&
+               uint64_t(left) + size.width <= picture.width &&
+               uint64_t(top) + size.height <= picture.height;
+    }
+};
+
 /// Mist in the air. Of light that goes a way through it, the share exp(-way / distance) is left,
 /// and the fog's own color takes the place of the rest.
 struct Fog {
@@ -458,6 +478,7 @@ struct Scene {
     std::optional<Camera> camera;      // none: the host frames the bounds
     std::optional<FaceCamera> faces;   // of a camera by_faces
     std::optional<ImageSize> size;     // of the picture, where the file asks for one
+    std::optional<PicturePart> part;   // of it that is rendered; none: all
     std::optional<uint32_t> max_depth; // reflections and refractions in a row; none: the host's
     std::optional<uint32_t> samples;   // rays a pixel that its camera takes; none: the host's
     Background background;

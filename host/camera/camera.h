@@ -8,7 +8,6 @@
 #include "core/result.h"
 #include "core/scene.h"
 #include "host/camera/face_rays.h"
-#include "host/film/picture_part.h"
 
 #include <cstdint>
 #include <optional>

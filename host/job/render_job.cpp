@@ -75,9 +75,26 @@ static std::optional<ThreadLimit> limit_threads(uint32_t threads) {
     return std::optional<ThreadLimit>(std::in_place, threads);
 }
 
-static Result<PicturePart> part_of(const ImageSize& picture, const std::optional<Crop>& crop) {
+/// Returns the part that has about the same place in a picture of another size.
+static PicturePart in_picture(const PicturePart& part, const ImageSize& picture) {
+    const auto side = [](uint32_t first, uint32_t count, uint32_t of, uint32_t all) {
+        const auto moved = [&](uint32_t place) {
+            return uint32_t((uint64_t(place) * all + of / 2) / of);
+        };
+        const uint32_t begin = std::min(moved(first), all - 1);
+        return std::pair(begin, std::max(moved(first + count), begin + 1) - begin);
+    };
+    const auto [left, width] = side(part.left, part.size.width, part.picture.width, picture.width);
+    const auto [top, height] =
+        side(part.top, part.size.height, part.picture.height, picture.height);
+    return {picture, left, top, {width, height}};
+}
+
+static Result<PicturePart> part_of(const RenderJob& job, const Scene& scene) {
+    const ImageSize picture = job.size.value_or(scene.size.value_or(ImageSize{}));
+    const std::optional<Crop>& crop = job.crop;
     if (!crop)
-        return PicturePart{picture, 0, 0, picture};
+        return scene.part ? in_picture(*scene.part, picture) : PicturePart{picture, 0, 0, picture};
     if (uint64_t(crop->left) + crop->size.width > picture.width ||
         uint64_t(crop->top) + crop->size.height > picture.height)
         return Error{fmt::format("--crop {}x{}+{}+{} does not lie within the picture of {}x{}",
@@ -285,8 +302,7 @@ static Result<int> render_others(const RenderJob& job, const RankBytes& there, W
         return opened.error();
     tell_of_integrator(job, *scene, log);
     stats.scene = job.scene.name();
-    const ImageSize size = job.size.value_or(scene->size.value_or(ImageSize{}));
-    const Result<PicturePart> part = part_of(size, job.crop);
+    const Result<PicturePart> part = part_of(job, *scene);
     if (!part)
         return part.error();
     stats.width = part->size.width;

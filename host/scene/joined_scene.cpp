@@ -34,6 +34,8 @@ public:
             all_.faces = std::move(scene.faces);
         take_first(all_.camera, scene.camera, next.name, "camera");
         all_.moves = all_.moves || scene.moves;
+        if (!all_.size)
+            all_.part = scene.part;
         take_first(all_.size, scene.size, next.name, "picture's size");
         take_first(all_.max_depth, scene.max_depth, next.name, "depth");
         take_first(all_.samples, scene.samples, next.name, "rays a pixel");

@@ -8,7 +8,6 @@
 
 #include "core/scene.h"
 #include "core/system/log.h"
-#include "host/film/picture_part.h"
 #include "host/shade/integrator.h"
 #include "host/shade/lights/light_sampler.h"
 #include "host/shade/surface/bsdf.h"

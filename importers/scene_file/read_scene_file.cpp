@@ -105,6 +105,8 @@ bool is_sound(const Scene& scene) {
     const auto fits = [](uint32_t side) { return side >= 1 && side <= kMaxPixels; };
     if (scene.size && !(fits(scene.size->width) && fits(scene.size->height)))
         return false;
+    if (scene.part && !scene.part->lies_in_picture())
+        return false;
     if (!(scene.exposure > 0))
         return false;
     for (const Light& light : scene.lights)

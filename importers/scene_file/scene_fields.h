@@ -196,8 +196,8 @@ void each_field(auto& io, Some<MeshInfo> auto& m) {
 /// Passes all fields except meshes, soup, and what the file's other parts hold.
 void each_field(auto& io, Some<Scene> auto& s) {
     io(s.name, s.materials, s.textures, s.pictures, s.bumps, s.cutouts, s.lights, s.may_add_light,
-       s.camera, s.faces, s.size, s.max_depth, s.samples, s.background, s.radiosity, s.exposure,
-       s.gamma, s.omissions, s.instancing);
+       s.camera, s.faces, s.size, s.part, s.max_depth, s.samples, s.background, s.radiosity,
+       s.exposure, s.gamma, s.omissions, s.instancing);
 }
 
 void each_field(auto& io, Some<FileStamp> auto& f) {

@@ -264,7 +264,8 @@ void Interpreter::fill(Scene& scene) {
     scene.cutouts = alphas_.take(/* partial= */ !world_ended_);
     textures_.take(scene);
     if (film_.has_size)
-        scene.size = film_.rendered();
+        scene.size = film_.size;
+    scene.part = film_.part;
     if (camera_)
         scene.camera = make_camera(*camera_, film_, diagnostics_);
     lights_.finish(scene.camera ? scene.camera->up : dvec3(0, 1, 0), scene);

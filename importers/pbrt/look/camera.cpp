@@ -28,11 +28,9 @@ uint32_t side_of(const Parameters& parameters, std::string_view name, uint32_t o
 }
 
 /// Takes the part of the picture that is rendered: pbrt's cropwindow in shares of it, or v4's
-/// pixelbounds; x from and to, then y.
+/// pixelbounds; x from and to, then y. Pixels are counted in floats, as pbrt does.
 void take_part(const Parameters& parameters, Film& film, Diagnostics& diagnostics) {
-    const dvec2 size(film.size.width, film.size.height);
-    film.first = dvec2(0);
-    film.last = size;
+    const vec2 size(film.size.width, film.size.height);
     for (const std::string_view name : {"cropwindow", "pixelbounds"}) {
         const Parameter* const part = parameters.find(name, {Kind::Float, Kind::Integer});
         if (!part)
@@ -41,14 +39,18 @@ void take_part(const Parameters& parameters, Film& film, Diagnostics& diagnostic
         if (part->numbers.size() != 4)
             return; // tell_left_over() fails
         const std::vector<double>& n = part->numbers;
-        const dvec2 scale = name == "cropwindow" ? size : dvec2(1);
-        const dvec2 a = scale * dvec2(n[0], n[2]), b = scale * dvec2(n[1], n[3]);
-        film.first = glm::max(glm::ceil(glm::min(a, b)), dvec2(0));
-        film.last = glm::min(glm::ceil(glm::max(a, b)), size);
-        if (!(film.first.x < film.last.x && film.first.y < film.last.y)) {
+        const vec2 scale = name == "cropwindow" ? size : vec2(1);
+        const vec2 a = scale * vec2(n[0], n[2]), b = scale * vec2(n[1], n[3]);
+        const vec2 first = glm::max(glm::ceil(glm::min(a, b)), vec2(0));
+        const vec2 last = glm::min(glm::ceil(glm::max(a, b)), size);
+        if (!(first.x < last.x && first.y < last.y)) {
             diagnostics.fail(part->place, fmt::format("found {} without a pixel in it", name));
             return;
         }
+        film.part = PicturePart{film.size,
+                                uint32_t(first.x),
+                                uint32_t(first.y),
+                                {uint32_t(last.x - first.x), uint32_t(last.y - first.y)}};
         film.has_size = true;
     }
 }
@@ -88,14 +90,6 @@ Screen screen_of(const Parameters& p, const Film& film) {
     window->wants = 4;
     const std::vector<double>& n = window->numbers;
     return n.size() == 4 ? Screen{n[0], n[1], n[2], n[3]} : screen;
-}
-
-/// Returns the part of the screen that is rendered; rows go down.
-Screen rendered(const Screen& all, const Film& film) {
-    const double across = (all.right - all.left) / double(film.size.width);
-    const double down = (all.bottom - all.top) / double(film.size.height);
-    return {all.left + across * film.first.x, all.left + across * film.last.x,
-            all.top + down * film.last.y, all.top + down * film.first.y};
 }
 
 bool is_orthographic(const CameraRequest& request) {
@@ -144,7 +138,7 @@ std::optional<Camera> make_camera(const CameraRequest& request, const Film& film
             "camera", request.place,
             fmt::format("a camera {} becomes a perspective one", ovc::quoted(request.type)));
     const double angle = angle_of_view(request);
-    const Screen screen = rendered(screen_of(request.parameters, film), film);
+    const Screen screen = screen_of(request.parameters, film);
     const double tangent = orthographic ? 1 : std::tan(angle * (std::numbers::pi / 360));
 
     const dmat4 to_world = glm::inverse(request.world_to_camera);
@@ -157,7 +151,7 @@ std::optional<Camera> make_camera(const CameraRequest& request, const Film& film
         vector_through(to_world, {tangent * (screen.right - screen.left), 0, 0}),
         vector_through(to_world, {0, tangent * (screen.top - screen.bottom), 0}), orthographic};
     if (!request.parameters.find("screenwindow") && !request.parameters.find("frameaspectratio"))
-        camera.window->shape = film.rendered().width / double(film.rendered().height);
+        camera.window->shape = film.size.width / double(film.size.height);
     camera.eye = orthographic ? point_through(to_world, {x, y, 0}) : eye;
     camera.target = camera.eye + camera.window->direction;
     camera.up = camera.window->up;

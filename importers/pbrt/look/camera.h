@@ -11,11 +11,9 @@ namespace ovc::pbrt {
 /// The arguments of the Film directive.
 struct Film {
     ImageSize size{640, 480};
-    bool has_size = false;          // whether the file gave it
-    dvec2 first{0}, last{640, 480}; // the corners, in pixels, of the part that is rendered
-    float exposure = 1;             // the factor on all light
-
-    ImageSize rendered() const { return {uint32_t(last.x - first.x), uint32_t(last.y - first.y)}; }
+    bool has_size = false;           // whether the file gave it
+    std::optional<PicturePart> part; // that is rendered; none: all
+    float exposure = 1;              // the factor on all light
 };
 
 /// Fails on a size, or a part of the picture, that is none.
