@@ -96,6 +96,11 @@ bool is_orthographic(const CameraRequest& request) {
     return request.type == "orthographic";
 }
 
+/// v4 calls it spherical, and earlier versions environment.
+bool is_spherical(const CameraRequest& request) {
+    return request.type == "spherical" || request.type == "environment";
+}
+
 double angle_of_view(const CameraRequest& request) {
     const Parameters& p = request.parameters;
     return p.find("halffov") ? 2 * p.number("halffov", 45) : p.number("fov", 90);
@@ -111,6 +116,59 @@ std::optional<Lens> lens_of(const Parameters& p, const dmat4& to_world) {
                 focus};
 }
 
+/// Returns the camera that sees all around: the y axis is at the top, x at the left and right edge
+/// and z a quarter from the left.
+Camera spherical_camera(const CameraRequest& request, Diagnostics& diagnostics) {
+    if (request.parameters.text("mapping", "equirectangular") != "equirectangular")
+        diagnostics.approximate(
+            "mapping", request.place,
+            "a camera 'spherical' of equal areas becomes an equirectangular one");
+    const dmat4 to_world = glm::inverse(request.world_to_camera);
+    ImageWindow window;
+    window.bend = ImageWindow::Bend::Spherical;
+    window.direction = vector_through(to_world, {-1, 0, 0});
+    window.right = vector_through(to_world, {0, 0, -1});
+    window.up = vector_through(to_world, {0, 1, 0});
+    window.angle = 360;
+    window.vertical_angle = 180;
+    Camera camera;
+    camera.eye = point_through(to_world, dvec3(0));
+    camera.target = camera.eye + window.direction;
+    camera.up = window.up;
+    camera.fov_degrees = 90;
+    // The window turns around its axes, which turns a mirrored picture upside down.
+    if (glm::dot(glm::cross(window.right, window.up), window.direction) < 0) {
+        window.right = -window.right;
+        window.up = -window.up;
+    }
+    camera.window = window;
+    return camera;
+}
+
+/// Returns the camera of a flat picture.
+Camera flat_camera(const CameraRequest& request, const Film& film) {
+    const bool orthographic = is_orthographic(request);
+    const double angle = angle_of_view(request);
+    const Screen screen = screen_of(request.parameters, film);
+    const double tangent = orthographic ? 1 : std::tan(angle * (std::numbers::pi / 360));
+    const dmat4 to_world = glm::inverse(request.world_to_camera);
+    const double x = tangent * (screen.left + screen.right) / 2;
+    const double y = tangent * (screen.bottom + screen.top) / 2;
+    Camera camera;
+    camera.window = ImageWindow{
+        vector_through(to_world, {orthographic ? 0 : x, orthographic ? 0 : y, 1}),
+        vector_through(to_world, {tangent * (screen.right - screen.left), 0, 0}),
+        vector_through(to_world, {0, tangent * (screen.top - screen.bottom), 0}), orthographic};
+    if (!request.parameters.find("screenwindow") && !request.parameters.find("frameaspectratio"))
+        camera.window->shape = film.size.width / double(film.size.height);
+    camera.eye = point_through(to_world, orthographic ? dvec3(x, y, 0) : dvec3(0));
+    camera.target = camera.eye + camera.window->direction;
+    camera.up = camera.window->up;
+    camera.fov_degrees = angle;
+    camera.lens = lens_of(request.parameters, to_world);
+    return camera;
+}
+
 bool is_usable(const Camera& camera) {
     const ImageWindow& w = *camera.window;
     return ovc::is_finite(camera.eye) && ovc::is_finite(w.direction) && ovc::is_finite(w.right) &&
@@ -122,7 +180,7 @@ bool is_usable(const Camera& camera) {
 
 bool check_camera(const CameraRequest& request, Diagnostics& diagnostics) {
     const double angle = angle_of_view(request);
-    if (is_orthographic(request) || (angle > 0 && angle < 180))
+    if (is_orthographic(request) || is_spherical(request) || (angle > 0 && angle < 180))
         return true;
     return diagnostics.fail(
         request.place,
@@ -132,32 +190,15 @@ bool check_camera(const CameraRequest& request, Diagnostics& diagnostics) {
 std::optional<Camera> make_camera(const CameraRequest& request, const Film& film,
                                   Diagnostics& diagnostics) {
     assert(film.size.width > 0 && film.size.height > 0);
-    const bool orthographic = is_orthographic(request);
-    if (!orthographic && request.type != "perspective")
+    const bool is_known =
+        is_orthographic(request) || is_spherical(request) || request.type == "perspective";
+    if (!is_known)
         diagnostics.approximate(
             "camera", request.place,
             fmt::format("a camera {} becomes a perspective one", ovc::quoted(request.type)));
-    const double angle = angle_of_view(request);
-    const Screen screen = screen_of(request.parameters, film);
-    const double tangent = orthographic ? 1 : std::tan(angle * (std::numbers::pi / 360));
-
-    const dmat4 to_world = glm::inverse(request.world_to_camera);
-    const dvec3 eye = point_through(to_world, dvec3(0));
-    const double x = tangent * (screen.left + screen.right) / 2;
-    const double y = tangent * (screen.bottom + screen.top) / 2;
-    Camera camera;
-    camera.window = ImageWindow{
-        vector_through(to_world, {orthographic ? 0 : x, orthographic ? 0 : y, 1}),
-        vector_through(to_world, {tangent * (screen.right - screen.left), 0, 0}),
-        vector_through(to_world, {0, tangent * (screen.top - screen.bottom), 0}), orthographic};
-    if (!request.parameters.find("screenwindow") && !request.parameters.find("frameaspectratio"))
-        camera.window->shape = film.size.width / double(film.size.height);
-    camera.eye = orthographic ? point_through(to_world, {x, y, 0}) : eye;
-    camera.target = camera.eye + camera.window->direction;
-    camera.up = camera.window->up;
-    camera.fov_degrees = angle;
-    camera.lens = lens_of(request.parameters, to_world);
-    if (orthographic || request.type == "perspective")
+    const Camera camera =
+        is_spherical(request) ? spherical_camera(request, diagnostics) : flat_camera(request, film);
+    if (is_known)
         tell_left_over(request.parameters, "cameras", request.type, diagnostics);
     if (is_usable(camera))
         return camera;

@@ -44,5 +44,23 @@ TEST(PbrtFilm, AWindowKnowsThePictureThatItIsFor) {
         EXPECT_EQ(scene_of("", std::string("\"perspective\" ") + own).camera->window->shape, 0);
 }
 
+TEST(PbrtFilm, ASphericalCameraSeesAllAround) {
+    for (const char* type : {"\"environment\"", "\"spherical\""})
+        for (const bool mirrored : {false, true}) {
+            const Scene scene = scene_of(mirrored ? "Scale -1 1 1" : "", type);
+            ASSERT_TRUE(scene.camera && scene.camera->window);
+            const ImageWindow& window = *scene.camera->window;
+            EXPECT_EQ(window.bend, ImageWindow::Bend::Spherical);
+            EXPECT_EQ(window.angle, 360);
+            EXPECT_EQ(window.vertical_angle, 180);
+            const double x = mirrored ? 1 : -1;
+            EXPECT_EQ(window.direction, dvec3(x, 0, 0));
+            // The host turns the other way where these are left-handed.
+            EXPECT_EQ(window.right, dvec3(0, 0, mirrored ? -1 : 1));
+            EXPECT_EQ(window.up, dvec3(0, mirrored ? 1 : -1, 0));
+            EXPECT_EQ(scene.camera->up, dvec3(0, 1, 0));
+        }
+}
+
 } // namespace
 } // namespace ovc

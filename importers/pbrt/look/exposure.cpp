@@ -29,6 +29,12 @@ double weight_in(const Camera& camera, const Triangle& t, const dvec3& middle) {
     assert(camera.window);
     const ImageWindow& w = *camera.window;
     const dvec3 there = middle - camera.eye;
+    if (w.bend != ImageWindow::Bend::Flat) { // all around
+        const double distance = glm::length(there);
+        const dvec3 across = 0.5 * glm::cross(t[1] - t[0], t[2] - t[0]);
+        const double area = std::abs(glm::dot(across, there));
+        return distance > 0 ? std::min(area / (distance * distance * distance), 1.0) : 0;
+    }
     const dvec3 forward = glm::normalize(w.direction);
     const double depth = glm::dot(there, forward);
     if (!(depth > 0))
