@@ -140,6 +140,14 @@ void tell_simplifications(const Scene& scene, std::span<const Light> lights,
             fmt::format("{}: area lights shine from a few points on them, and shadows are hard; "
                         "--integrator path has them as they are",
                         source));
+    const auto shines_alone = [](const Material& m) {
+        return m.optics && m.optics->emission != vec3(0) && !m.finish;
+    };
+    if (std::ranges::any_of(scene.materials, shines_alone))
+        say(log, LogLevel::Warning,
+            fmt::format("{}: surfaces that send out light are bright but light no others; "
+                        "--integrator path has their light",
+                        source));
     if (scene.exposure != 1)
         say(log, LogLevel::Info,
             fmt::format("{}: light times {:.3g}, to fit a picture that ends at white; "

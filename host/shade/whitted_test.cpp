@@ -582,6 +582,20 @@ TEST(Whitted, TellsThatAPictureInTheSkyLightsEvenly) {
                                               "are"}));
 }
 
+TEST(Whitted, TellsThatSurfacesLightNoOthers) {
+    Scene scene = room();
+    std::vector<std::string> said;
+    const LogSink log = [&](LogLevel, const std::string& sentence) { said.push_back(sentence); };
+    scene.materials.at(0).optics = Optics{.emission = vec3(1)};
+    tell_simplifications(scene, scene.lights, "a.obj", log);
+    EXPECT_EQ(said,
+              (std::vector<std::string>{"a.obj: surfaces that send out light are bright but "
+                                        "light no others; --integrator path has their light"}));
+    scene.materials[0].finish.emplace(); // lights stand for such emitters
+    tell_simplifications(scene, scene.lights, "a.obj", log);
+    EXPECT_EQ(said.size(), 1u);
+}
+
 TEST(Whitted, HandsOnTheBackendsError) {
     FailingBackend backend;
     Film film(2, 2);

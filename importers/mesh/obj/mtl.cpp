@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The reader of MTL understands newmtl, Kd, Ks, Tf, d, Tr, Ni, illum and the textures of
+// The reader of MTL understands newmtl, Kd, Ks, Ke, Tf, d, Tr, Ni, illum and the textures of
 // mtl_textures.h.
 // Based on: Wavefront, "MTL material format", version 4.2 (1995).
 #include "importers/mesh/obj/mtl.h"
@@ -120,7 +120,7 @@ private:
         else if (keyword == "Tf")
             entry.filter = color(keyword, rest);
         else if (keyword == "Ke")
-            entry.read.emits = color(keyword, rest).value_or(vec3(0)) != vec3(0);
+            entry.read.emission = numbers(keyword, rest).value_or(vec3(0));
         else if (keyword == "d")
             entry.dissolve = dissolve(rest);
         else if (keyword == "Tr")
@@ -136,7 +136,7 @@ private:
     }
 
     /// "Kd 0.5" is a grey, as the format says. Returns nothing for "Kd spectral …" and "Kd xyz …".
-    std::optional<vec3> color(std::string_view keyword, std::string_view rest) {
+    std::optional<vec3> numbers(std::string_view keyword, std::string_view rest) {
         std::string_view behind = rest;
         if (const std::string_view word = next_word(behind); word == "spectral" || word == "xyz") {
             leave_out(std::string(word), fmt::format("colors {}", ovc::quoted(word)));
@@ -146,7 +146,12 @@ private:
         if (!trimmed(rest).empty())
             for (const int i : {1, 2})
                 color[i] = float(number(keyword, rest));
-        return glm::clamp(color, vec3(0), vec3(1));
+        return glm::max(color, vec3(0));
+    }
+
+    std::optional<vec3> color(std::string_view keyword, std::string_view rest) {
+        const std::optional<vec3> any = numbers(keyword, rest);
+        return any ? std::optional(glm::min(*any, vec3(1))) : std::nullopt;
     }
 
     /// "d -halo 0.5" asks for what d does, less in the middle.

@@ -19,7 +19,7 @@ struct LibraryMaterial {
     Material material;
     std::vector<MtlTexture> shown = {};     // for add_mtl_texture()
     std::vector<std::string> textures = {}; // others, "refl 'sky.png'", each once
-    bool emits = false;                     // Ke
+    vec3 emission{0};                       // Ke
     std::filesystem::path library = {};
 };
 
@@ -27,7 +27,7 @@ struct LibraryMaterial {
 /// of Ks becomes the mirror if illum (3 to 8) asks for reflection. If illum asks for glass (4, 6,
 /// 7, 9), light that is not mirrored passes through: 1 - d of it, else Tr, or all if neither dims
 /// it; Tf becomes the filter, and Ni the index of refraction if illum is 6 or 7. Fresnel's
-/// equations (5, 7) are left out. The textures of mtl_textures.h are kept for the reader.
+/// equations (5, 7) are left out. Ke and the textures of mtl_textures.h are kept for the reader.
 /// Statements that the format knows and that mean nothing here are ignored; others are said, once
 /// per kind. Error: a color or number that is none. path: of the source; log: receives the
 /// warnings.

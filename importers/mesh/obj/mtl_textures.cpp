@@ -154,8 +154,8 @@ MtlTexture parse_mtl_texture(std::string_view keyword, std::string_view rest, ui
 
 bool is_shown(const MtlTexture& texture) {
     const std::string& k = texture.keyword;
-    return !texture.file.empty() &&
-           (k == "map_kd" || k == "map_ks" || k == "map_d" || k == "norm" || is_bump(k));
+    return !texture.file.empty() && (k == "map_kd" || k == "map_ks" || k == "map_ke" ||
+                                     k == "map_d" || k == "norm" || is_bump(k));
 }
 
 void add_mtl_texture(const MtlTexture& texture, const std::filesystem::path& library, Scene& scene,
@@ -163,7 +163,7 @@ void add_mtl_texture(const MtlTexture& texture, const std::filesystem::path& lib
     const uint32_t picture =
         add_picture(scene, picture_path(library.parent_path(), texture.file),
                     fmt::format("{}, line {}", library.string(), texture.line));
-    const bool is_color = texture.keyword == "map_kd" || texture.keyword == "map_ks";
+    const bool is_color = texture.keyword.starts_with("map_k");
     Texture image = image_of(texture, picture, is_color ? 0 : 1);
     if (texture.keyword == "map_kd")
         return add_color(std::move(image), scene, to.material);
@@ -172,8 +172,12 @@ void add_mtl_texture(const MtlTexture& texture, const std::filesystem::path& lib
         to.cutout = Cutout{.texture = add_texture(scene, std::move(image))};
         return;
     }
-    if (texture.keyword == "map_ks") {
-        to.material.maps.emplace().reflection = add_texture(scene, std::move(image));
+    if (is_color) {
+        if (!to.material.maps)
+            to.material.maps.emplace();
+        MaterialMaps& maps = *to.material.maps;
+        (texture.keyword == "map_ks" ? maps.reflection : maps.emission) =
+            add_texture(scene, std::move(image));
         return;
     }
     const bool is_normal = texture.keyword == "norm";

@@ -86,6 +86,27 @@ TEST(MtlTextures, BlackKdLeavesThePictureAlone) {
     EXPECT_EQ(scene.textures[0].image->scale, vec3(1));
 }
 
+TEST(MtlTextures, KeMakesLight) {
+    const TestFolder folder;
+    const auto material = [&](const std::string& statements) {
+        const Scene scene = scene_of(folder, statements);
+        return scene.materials[scene.meshes[0].material];
+    };
+    const Material lamp = material("Kd 0.5\nKe 17 12 4\n");
+    ASSERT_TRUE(lamp.optics);
+    EXPECT_EQ(lamp.optics->emission, vec3(17, 12, 4)) << "brighter than white";
+    EXPECT_EQ(lamp.optics->diffuse, vec3(0.5f));
+    EXPECT_TRUE(lamp.optics->two_sided);
+    EXPECT_EQ(material("Ke 1\nKs 0.25\nillum 3\n").optics->reflection, vec3(0.25f));
+    EXPECT_FALSE(material("Ke 0 0 0\n").optics);
+    EXPECT_FALSE(material("Ke 1\nd 0.5\nillum 4\n").optics) << "left out, which is said";
+    const Material shown = material("Ke 0 0 0\nmap_Ke a.png\nmap_Ks b.png\n");
+    EXPECT_EQ(shown.optics->emission, vec3(1)) << "black leaves the picture alone";
+    ASSERT_TRUE(shown.maps);
+    EXPECT_NE(shown.maps->emission, kNone);
+    EXPECT_NE(shown.maps->reflection, kNone);
+}
+
 TEST(MtlTextures, EachStatementChangesItsPart) {
     const TestFolder folder;
     const Scene scene = scene_of(folder, "Ks 0.5\nillum 3\nmap_Ks a.png\nmap_d a.png\n"

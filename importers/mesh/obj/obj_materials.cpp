@@ -11,6 +11,30 @@
 
 namespace ovc {
 
+static bool emits(const LibraryMaterial& read) {
+    return read.emission != vec3(0) || std::ranges::any_of(read.shown, [](const MtlTexture& t) {
+               return t.keyword == "map_ke";
+           });
+}
+
+/// Optics have no mirror beside glass, so that only opaque surfaces shine.
+static bool is_opaque(const Material& material) {
+    return material.transmission == 0;
+}
+
+/// Lets a surface send out light. emission: Ke, which multiplies map_Ke, unless it
+/// is black: programs write 0 0 0 where a picture is meant to stand alone.
+static void let_shine(const vec3& emission, Material& material) {
+    Optics& optics = material.optics.emplace();
+    optics.diffuse = material.color;
+    if (material.mirror > 0) {
+        optics.boundary = Optics::Boundary::Mirror;
+        optics.reflection = vec3(material.mirror);
+    }
+    optics.emission = emission == vec3(0) ? vec3(1) : emission;
+    optics.two_sided = true; // faces have no back
+}
+
 Result<Done> ObjMaterials::read_libraries(std::string_view names, bool has_uv, const Warn& warn) {
     const std::string_view rest = trimmed(without_comment(names));
     for (const std::string_view name : {names, rest})
@@ -85,7 +109,7 @@ void ObjMaterials::say_left_out(const std::vector<bool>& used, const Source& sou
         for (const std::string& texture : materials_[m].textures)
             if (std::find(textures.begin(), textures.end(), texture) == textures.end())
                 textures.push_back(texture);
-        if (materials_[m].emits)
+        if (emits(materials_[m]) && !is_opaque(materials_[m].material))
             emitters.push_back(ovc::quoted(materials_[m].material.name));
     }
     const auto warn_of = [&](const std::string& sentence) {
@@ -108,6 +132,8 @@ std::vector<uint32_t> ObjMaterials::add_to(Scene& scene, const std::vector<bool>
         for (const MtlTexture& texture : read.shown)
             if (used[m])
                 add_mtl_texture(texture, read.library, scene, to);
+        if (used[m] && emits(read) && is_opaque(material))
+            let_shine(read.emission, material);
         if (to.cutout) {
             cutouts[m] = uint32_t(scene.cutouts.size());
             scene.cutouts.push_back(*to.cutout);

@@ -182,10 +182,11 @@ TEST(Obj, VertexColorsAreSaidOnce) {
 
 TEST(Obj, TexturesAndLightOfMaterialsInUseAreSaidOnce) {
     const TestFolder folder;
-    folder.write("m.mtl", "newmtl a\nKd 1 0 0\nmap_Kd wood floor.png\nmap_aat on\nKe 0 0 0\n"
-                          "newmtl b\nmap_Kd wood floor.png\ndisp -bm 0.5 bumps.png\n"
-                          "Ke 4 4 2\nnewmtl c\nrefl -type sphere sky.png\nmap_d leaf.png\n"
-                          "norm n.png\nnewmtl unused\nmap_Kd unused.png\nKe 1\n");
+    folder.write("m.mtl",
+                 "newmtl a\nKd 1 0 0\nmap_Kd wood floor.png\nmap_aat on\nKe 0 0 0\n"
+                 "newmtl b\nmap_Kd wood floor.png\ndisp -bm 0.5 bumps.png\n"
+                 "Ke 4 4 2\nd 0.5\nillum 4\nnewmtl c\nrefl -type sphere sky.png\nmap_d leaf.png\n"
+                 "norm n.png\nnewmtl unused\nmap_Kd unused.png\nKe 1\n");
     folder.write("plain.mtl", "newmtl d\nKd 1 1 1\n");
     std::vector<std::string> warnings;
     const auto scene =
