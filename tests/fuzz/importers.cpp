@@ -180,6 +180,7 @@ Scene scene_with_everything() {
     camera.window->bend = ImageWindow::Bend::Omnimax;
     scene.camera = camera;
     scene.size = ImageSize{320, 240};
+    scene.part = PicturePart{{320, 240}, 10, 20, {100, 50}};
     scene.max_depth = 7;
     scene.samples = 9;
     scene.background.zenith = vec3(0, 0, 1);
