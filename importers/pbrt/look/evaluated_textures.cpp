@@ -146,7 +146,7 @@ std::optional<uint32_t> Textures::make_image(const TextureRequest& request) {
     return made;
 }
 
-/// Returns what a parameter of a texture is: a colour, or another texture. Nothing: that is shown
+/// Returns what a parameter of a texture is: a color, or another texture. Nothing: that is shown
 /// by its mean.
 std::optional<TextureStop> Textures::stop(const Definition& definition, std::string_view name,
                                           const vec3& otherwise) {

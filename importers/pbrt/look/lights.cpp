@@ -45,7 +45,7 @@ vec3 Lights::scaled(const Parameters& p, std::string_view color, const vec3& oth
         const float luminance = glm::dot(light, vec3(0.2126f, 0.7152f, 0.0722f));
         light /= luminance > 0 ? luminance : 1;
     }
-    // v2 and v3 scale by a colour, v4 by a number.
+    // v2 and v3 scale by a color, v4 by a number.
     return light * textures_.color(p, "scale", vec3(1));
 }
 
@@ -179,7 +179,7 @@ void Lights::add_distant(const Parameters& p, const dmat4& to_world, const Place
     lights_.push_back(light);
 }
 
-/// A map is a layer before a sky of even colours, which Whitted's model takes ambient light from.
+/// A map is a layer before a sky of even colors, which Whitted's model takes ambient light from.
 void Lights::add_infinite(const Parameters& p, const dmat4& to_world, const Place& place) {
     const bool has_map = p.find("mapname") || p.find("filename");
     const float factor = has_map ? 1 : factor_of(p, "illuminance", pi);

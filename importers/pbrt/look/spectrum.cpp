@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The CIE 1931 observer turns spectra into colours.
+// The CIE 1931 observer turns spectra into colors.
 // Based on: Wyman, Sloan and Shirley 2013, "Simple Analytic Approximations to the CIE XYZ Color
 // Matching Functions"; Planck's law; sRGB's matrix (IEC 61966-2-1).
 #include "importers/pbrt/look/spectrum.h"
@@ -48,7 +48,7 @@ struct Metal {
     vec3 color;
 };
 
-// The colours are linear sRGB, seen head on. They are from Lagarde 2011, "Feeding a Physically
+// The colors are linear sRGB, seen head on. They are from Lagarde 2011, "Feeding a Physically
 // Based Shading Model"; brass from physicallybased.info; the oxides from their indices, 1.74 and
 // 2.6.
 constexpr Metal kMetals[] = {{"Ag", {0.972f, 0.960f, 0.915f}},  {"Al", {0.913f, 0.921f, 0.925f}},
@@ -93,7 +93,7 @@ double within_range(double kelvin) {
     return std::clamp(kelvin, 500.0, 1e5);
 }
 
-/// Returns the colour of a black body whose spectrum is 1 where it is largest, as in v2 and v3.
+/// Returns the color of a black body whose spectrum is 1 where it is largest, as in v2 and v3.
 vec3 black_body_by_peak(double kelvin) {
     const double t = within_range(kelvin);
     const double peak = planck(2.8977721e6 / t, t); // Wien's law

@@ -1,25 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
-// The colour of a parameter as linear sRGB, in whatever way the file states it.
+// The color of a parameter as linear sRGB, in whatever way the file states it.
 #pragma once
 
 #include "importers/pbrt/interpret/parameters.h"
 
 namespace ovc::pbrt {
 
-/// Returns a colour of light or reflectance. The parameter may be a number; rgb; xyz; a black
+/// Returns a color of light or reflectance. The parameter may be a number; rgb; xyz; a black
 /// body's temperature in kelvin, of luminance 1, and in v2 and v3 a scale of a spectrum that is 1
 /// at its peak; or a spectrum as pairs of wavelength in nm and value, or one value for all. Returns
 /// nothing for a spectrum's name or file, and for too few numbers.
 std::optional<vec3> color_of(const Parameter& parameter);
 
-/// Returns the colour of a black body of luminance 1.
+/// Returns the color of a black body of luminance 1.
 vec3 black_body(double kelvin);
 
-/// Returns the colour of a spectrum of pairs (nm, value), at least one, which is linear in between
+/// Returns the color of a spectrum of pairs (nm, value), at least one, which is linear in between
 /// and constant beyond, as seen in white light: 1 everywhere is white.
 vec3 color_of_samples(std::span<const double> pairs);
 
-/// Returns the colour of a metal seen head on, by its name in pbrt ("metal-Au-eta",
+/// Returns the color of a metal seen head on, by its name in pbrt ("metal-Au-eta",
 /// "spds/Au.k.spd"); nothing if the name is not known.
 std::optional<vec3> metal_color(std::string_view name);
 /// Returns the same from eta and k.

@@ -86,7 +86,7 @@ const Textures::Definition* Textures::find(const Parameters& parameters,
 
 /// A texture of colors and one of floats may have the same name. v1 leaves open which it asks for.
 const Textures::Definition* Textures::find(const Parameter& parameter, bool of_floats) const {
-    // v1 may give a texture's name for a float or a colour.
+    // v1 may give a texture's name for a float or a color.
     if ((parameter.kind != Kind::Texture && parameter.kind != Kind::String) ||
         parameter.strings.empty())
         return nullptr;

@@ -42,7 +42,7 @@ public:
     /// parts are told of.
     void tell_mean(const std::string& type, const Place& place) const;
 
-    /// Returns the colour that a parameter states, or the mean of the texture that it names;
+    /// Returns the color that a parameter states, or the mean of the texture that it names;
     /// `otherwise` without either.
     vec3 color(const Parameters& parameters, std::string_view name, const vec3& otherwise) const;
     double number(const Parameters& parameters, std::string_view name, double otherwise) const;
@@ -53,7 +53,7 @@ public:
     /// Returns the texture of the scene that the parameter names; nothing if it names none, or one
     /// that is shown by its mean.
     std::optional<uint32_t> texture(const Parameters& parameters, std::string_view name);
-    /// Returns the product of a texture of the scene and a colour.
+    /// Returns the product of a texture of the scene and a color.
     uint32_t product(uint32_t texture, const vec3& color);
     /// Returns a texture of two, of which the second has a share.
     uint32_t mix(const TextureStop& low, const TextureStop& high, const TextureStop& share);
