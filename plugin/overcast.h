@@ -138,7 +138,7 @@ typedef enum ovc_precision {
 } ovc_precision;
 
 typedef enum ovc_kernel {
-    OVC_KERNEL_AUTO = 0, /* whichever is faster on this device; for batches of up to 4096 rays that may be the CPU */
+    OVC_KERNEL_AUTO = 0, /* whichever is faster on this device; for batches of up to 4096 nearest hits that may be the CPU */
     OVC_KERNEL_FRAGMENT = 1, /* answers all batches of more than 64 rays, as the next one does */
     OVC_KERNEL_COMPUTE = 2
 } ovc_kernel;

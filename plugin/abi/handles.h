@@ -19,6 +19,7 @@
 #include "plugin/leaf_store/leaf_store.h"
 #include "plugin/overcast.h"
 #include "plugin/structure/failure.h"
+#include "plugin/structure/faster_by_turns.h"
 #include "plugin/structure/single_rays.h"
 #include "plugin/structure/structure.h"
 
@@ -127,8 +128,7 @@ struct ovc_scene_t {
     ovc::Submissions submissions;
     ovc::SingleRays single_rays{turn};
     ovc::Gathering<const ovc::RayCall> batches; // of threads that ask at once
-    ovc::FasterWay ways_of_batches[2];          // for nearest hits, for any hits; 1: on the CPU
-    std::atomic<uint64_t> batches_asked{0};     // of those that may go either way
+    ovc::FasterByTurns ways_of_batches;         // of nearest hits; 1: on the CPU
     std::atomic<std::thread::id> streaming;     // the thread that is inside stream(), if any
     ovc_stream_t stream;
     std::unique_ptr<ovc_scene_t> next; // of those that are destroyed

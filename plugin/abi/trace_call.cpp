@@ -114,16 +114,15 @@ void trace_alone(ovc_scene scene, const RayCall& call, HostFloatMode& mode) {
         [&] { trace(call, committed(scene, call.name), watch); });
 }
 
-/// Answers a small batch on the CPU or by_kernel(), whichever was faster lately. One batch in 64
-/// may begin a trial, so that hosts that ask few batches have the kernel answer all.
+/// Answers a small batch on the CPU or by_kernel(), whichever was faster lately. Occlusion is
+/// always the kernel's (docs/decisions/0040).
 template <class ByKernel>
 void by_faster_way(ovc_scene scene, const RayCall& call, ByKernel&& by_kernel) {
-    FasterWay& ways = scene->ways_of_batches[call.any_hit];
-    FasterWay::Use use = ways.begin();
-    use.work = call.rays.size();
-    if (use.way == 0 || !answer_few(scene, call))
+    if (call.any_hit)
+        return by_kernel();
+    const FasterByTurns::Batch batch(scene->ways_of_batches, call.rays.size());
+    if (batch.way() == 0 || !answer_few(scene, call))
         by_kernel();
-    ways.end(use, /* may_look= */ ++scene->batches_asked % 64 == 0);
 }
 
 /// Traces a batch, in the scene's turn unless it is small. make_call() checks the arguments, which

@@ -13,9 +13,9 @@
 namespace ovc {
 
 /// Any number of threads may call it. The first way (0) is in use at the start. A trial is a slice
-/// of time with the way in use, then one with the other. It counts the work of the calls that end
-/// in the time during which any is under way, so that the host's own work between its calls makes
-/// neither way look slow.
+/// of time with the way in use, then one with the other. It counts how many calls end in the time
+/// during which any is under way, so that the host's own work between its calls makes neither way
+/// look slow.
 class FasterWay {
 public:
     using Clock = std::chrono::steady_clock;
@@ -29,8 +29,7 @@ public:
     /// The way that a call takes.
     struct Use {
         int way;
-        uint32_t slice;    // 0: in no trial
-        uint64_t work = 1; // how much the call does, in a unit that all calls share
+        uint32_t slice; // 0: in no trial
     };
 
     Use begin(Time (*now)() = Clock::now) {
@@ -64,7 +63,7 @@ private:
         if (!is_current(use))
             return;
         assert(inside_ > 0); // enter() counted this call in the same slice
-        done_ += use.work;
+        ++ended_;
         --inside_;
         const bool over = now >= slice_end_;
         if (inside_ == 0 || over)
@@ -89,14 +88,14 @@ private:
 
     void begin_slice(int way, Time now) {
         inside_ = 0;
-        done_ = 0;
+        ended_ = 0;
         busy_ = {};
         slice_end_ = now + kSlice;
         state_ = uint64_t(++last_slice_) << 1 | uint64_t(way);
     }
 
     void end_slice(const Use& use, Time now) {
-        rate_[use.way] = double(done_) / std::max(busy_.count(), Clock::rep(1));
+        rate_[use.way] = double(ended_) / std::max(busy_.count(), Clock::rep(1));
         if (use.way == incumbent_) {
             begin_slice(1 - incumbent_, now);
             return;
@@ -117,7 +116,7 @@ private:
     int incumbent_ = 0;
     Time slice_end_, busy_since_;
     Clock::duration busy_{}, pause_ = kFirstPause;
-    uint64_t inside_ = 0, done_ = 0; // of calls that began in the slice: how many, and their work
+    uint64_t inside_ = 0, ended_ = 0; // calls that began in the slice
     double rate_[2]{};
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Gathering: every ray is answered once, whatever the threads do; and the choice of the faster way,
 // under a clock of the test's own.
+#include "plugin/structure/faster_by_turns.h"
 #include "plugin/structure/faster_way.h"
 #include "plugin/structure/single_rays.h"
 
@@ -79,8 +80,7 @@ struct Simulation {
                                               std::chrono::duration<double>(seconds));
         size_t calls = 0, by_way1 = 0;
         while (now < end) {
-            FasterWay::Use use = way.begin([] { return now; });
-            use.work = use.way == 0 ? 1 : work1;
+            const FasterWay::Use use = way.begin([] { return now; });
             now += use.way == 0 ? way0 : way1;
             way.end(use, true, [] { return now; });
             now += std::chrono::milliseconds(1);
@@ -91,7 +91,6 @@ struct Simulation {
     }
 
     FasterWay way;
-    uint64_t work1 = 1; // that a call does by way 1
 };
 
 using std::chrono::microseconds;
@@ -119,11 +118,26 @@ TEST(FasterWay, DoesNotChangeForATrifle) {
     EXPECT_EQ(simulation.way.way(), 0);
 }
 
-TEST(FasterWay, ComparesTheWorkOfCalls) {
-    Simulation simulation;
-    Simulation::now = FasterWay::Time(std::chrono::hours(1));
-    simulation.work1 = 4;
-    EXPECT_GT(simulation.run(10, microseconds(100), microseconds(300)), 0.95);
+/// Returns the share of the batches that went way 1. As the host goes on, its batches take longer,
+/// whichever way they go.
+double share_by_way1(int batches, microseconds way0, microseconds way1) {
+    static FasterByTurns::Time now;
+    now = FasterByTurns::Time(std::chrono::hours(1));
+    FasterByTurns ways;
+    double by_way1 = 0;
+    for (int i = 0; i < batches; ++i) {
+        const FasterByTurns::Batch batch(ways, /* work= */ 100, [] { return now; });
+        now += (batch.way() == 0 ? way0 : way1) * (1 + i / 2000);
+        by_way1 += batch.way();
+    }
+    return by_way1 / batches;
+}
+
+TEST(FasterByTurns, TakesTheFasterWay) {
+    EXPECT_GT(share_by_way1(20'000, microseconds(300), microseconds(100)), 0.95);
+    EXPECT_LT(share_by_way1(20'000, microseconds(100), microseconds(300)), 0.02);
+    EXPECT_LT(share_by_way1(20'000, microseconds(300), microseconds(290)), 0.02) << "a trifle";
+    EXPECT_EQ(share_by_way1(60, microseconds(300), microseconds(100)), 0) << "few batches";
 }
 
 TEST(FasterWay, ManyThreadsMayAskAtOnce) {
