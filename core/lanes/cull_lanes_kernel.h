@@ -124,8 +124,7 @@ OVC_INLINE TestInDoubles<V> test_in_doubles(const CullRay& ray, const CullLanes&
                        magnitude(all_lanes<V>(ray.sz)) +
                    0x1p-1020;
     // A t that comes out infinite may be one of doubles all the same.
-    const MaskOf<V> is_finite = magnitude(test.t) <= 0x1.fffffffffffffp1023;
-    test.t_error = is_finite ? test.t_error : all_lanes<V>(__builtin_inf());
+    test.t_error = are_finite(test.t) ? test.t_error : all_lanes<V>(__builtin_inf());
     const MaskOf<V> before = test.t + test.t_error < ray.t_min;
     const MaskOf<V> beyond = test.t - test.t_error > ray.t_max;
     test.is_missed = w.is_outside | (w.is_inside & (before | beyond));

@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <utility>
 
 namespace ovc {
@@ -41,6 +42,10 @@ OVC_INLINE V larger(V a, V b) {
 template <class V>
 OVC_INLINE V magnitude(V x) {
     return Lanes<V>::magnitude(x);
+}
+template <class V>
+OVC_INLINE MaskOf<V> are_finite(V x) {
+    return magnitude(x) <= std::numeric_limits<double>::max();
 }
 template <class V>
 OVC_INLINE WordsOf<V> words_of(V x) {

@@ -19,11 +19,6 @@ struct FloatsType {
 template <class V>
 using FloatsOf = typename FloatsType<V>::Type;
 
-template <class V>
-OVC_INLINE MaskOf<V> are_finite(V x) {
-    return magnitude(x) <= std::numeric_limits<double>::max();
-}
-
 /// The part of rays inside something.
 template <class V>
 struct Inside {

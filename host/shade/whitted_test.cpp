@@ -567,35 +567,6 @@ public:
     std::string renderer() const override { return "none"; }
 };
 
-/// Path tracing has the light of a picture in the sky, so that no reader says it.
-TEST(Whitted, TellsThatAPictureInTheSkyLightsEvenly) {
-    Scene scene = room();
-    std::vector<std::string> said;
-    const LogSink log = [&](LogLevel, const std::string& sentence) { said.push_back(sentence); };
-    scene.background.layers.push_back({});
-    tell_simplifications(scene, scene.lights, "a.pbrt", log);
-    EXPECT_TRUE(said.empty()) << "POV-Ray's skies light nothing";
-    scene.lights.push_back({.parallel = true, .stand_in = true});
-    tell_simplifications(scene, scene.lights, "a.pbrt", log);
-    EXPECT_EQ(said, (std::vector<std::string>{"a.pbrt: environment maps light surfaces as a sky of "
-                                              "even colors; --integrator path has them as they "
-                                              "are"}));
-}
-
-TEST(Whitted, TellsThatSurfacesLightNoOthers) {
-    Scene scene = room();
-    std::vector<std::string> said;
-    const LogSink log = [&](LogLevel, const std::string& sentence) { said.push_back(sentence); };
-    scene.materials.at(0).optics = Optics{.emission = vec3(1)};
-    tell_simplifications(scene, scene.lights, "a.obj", log);
-    EXPECT_EQ(said,
-              (std::vector<std::string>{"a.obj: surfaces that send out light are bright but "
-                                        "light no others; --integrator path has their light"}));
-    scene.materials[0].finish.emplace(); // lights stand for such emitters
-    tell_simplifications(scene, scene.lights, "a.obj", log);
-    EXPECT_EQ(said.size(), 1u);
-}
-
 TEST(Whitted, HandsOnTheBackendsError) {
     FailingBackend backend;
     Film film(2, 2);

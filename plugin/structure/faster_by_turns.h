@@ -3,6 +3,8 @@
 // then while the host asks them.
 #pragma once
 
+#include "plugin/structure/trial_verdict.h"
+
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
@@ -22,9 +24,6 @@ public:
     static constexpr uint32_t kBatchesBetween = 64; // at least, before a trial
     static constexpr uint32_t kTurn = 8;            // batches that go one way in turn
     static constexpr uint32_t kTurns = 8;           // of a trial
-    static constexpr auto kFirstPause = std::chrono::milliseconds(50); // doubles up to the longest
-    static constexpr auto kLongestPause = std::chrono::seconds(5);
-    static constexpr double kGain = 1.1; // a change must be worth it
 
     /// A batch on its way, whose end the destructor tells. work: how much the batch does, in a unit
     /// that all share.
@@ -77,10 +76,9 @@ private:
         taken_[batch.way_].work += double(batch.work_);
         if (++ended_ < kTurns * (kTurn - 1))
             return;
-        const bool changes = taken_[1 - way_].rate() > kGain * taken_[way_].rate();
-        way_ = changes ? 1 - way_ : way_;
-        pause_ = changes ? kFirstPause : std::min<Clock::duration>(2 * pause_, kLongestPause);
-        next_trial_ = batch.begin_ + pause_;
+        if (verdict_.changes(taken_[way_].rate(), taken_[1 - way_].rate()))
+            way_ = 1 - way_;
+        next_trial_ = batch.begin_ + verdict_.pause();
     }
 
     static constexpr uint32_t kBatches = kTurns * kTurn; // of a trial
@@ -98,7 +96,7 @@ private:
     uint32_t begun_ = kBatches, ended_ = 0; // batches of the trial; all have begun: none is on
     uint32_t batches_since_ = 0;
     Taken taken_[2];
-    Clock::duration pause_ = kFirstPause;
+    TrialVerdict verdict_;
     Time next_trial_{};
 };
 

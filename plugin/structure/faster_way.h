@@ -3,6 +3,8 @@
 // trials while the calls go on.
 #pragma once
 
+#include "plugin/structure/trial_verdict.h"
+
 #include <algorithm>
 #include <atomic>
 #include <cassert>
@@ -22,9 +24,6 @@ public:
     using Time = Clock::time_point;
 
     static constexpr auto kSlice = std::chrono::milliseconds(5);
-    static constexpr auto kFirstPause = std::chrono::milliseconds(50); // doubles up to the longest
-    static constexpr auto kLongestPause = std::chrono::seconds(5);
-    static constexpr double kGain = 1.1; // a change must be worth it
 
     /// The way that a call takes.
     struct Use {
@@ -79,7 +78,7 @@ private:
         if (slice() != 0 || now.time_since_epoch().count() < next_trial_)
             return;
         if (next_trial_ == 0) { // the first call of all
-            next_trial_ = (now + kFirstPause).time_since_epoch().count();
+            next_trial_ = (now + verdict_.pause()).time_since_epoch().count();
             return;
         }
         incumbent_ = way();
@@ -100,9 +99,8 @@ private:
             begin_slice(1 - incumbent_, now);
             return;
         }
-        const bool changes = rate_[1 - incumbent_] > kGain * rate_[incumbent_];
-        pause_ = changes ? kFirstPause : std::min<Clock::duration>(2 * pause_, kLongestPause);
-        next_trial_ = (now + pause_).time_since_epoch().count();
+        const bool changes = verdict_.changes(rate_[incumbent_], rate_[1 - incumbent_]);
+        next_trial_ = (now + verdict_.pause()).time_since_epoch().count();
         state_ = uint64_t(changes ? 1 - incumbent_ : incumbent_);
     }
 
@@ -115,7 +113,8 @@ private:
     uint32_t last_slice_ = 0;
     int incumbent_ = 0;
     Time slice_end_, busy_since_;
-    Clock::duration busy_{}, pause_ = kFirstPause;
+    Clock::duration busy_{};
+    TrialVerdict verdict_;
     uint64_t inside_ = 0, ended_ = 0; // calls that began in the slice
     double rate_[2]{};
 };
