@@ -52,6 +52,7 @@ TEST(PovScene, OrthographicCamerasShowAsMuchAsPovRay) {
         double width, height;
     } cases[] = {
         {"location -z*10 look_at 0", 13.3, 10},
+        {"location -z*10 look_at 0 angle 40 angle 0", 13.3, 10},
         {"location -z*20 look_at 0", 26.6, 20},
         {"location -z*10", 14.63, 11},
         {"location -z*10 direction 2*z look_at 0", 6.65, 5},

@@ -36,6 +36,8 @@ void look_at(Reader& reader, CameraValue& camera, const dvec3& target) {
 
 void set_angle(Reader& reader, CameraValue& camera, double degrees, const Place& at) {
     const bool is_flat = camera.bend == ImageWindow::Bend::Flat && !camera.faces;
+    if (is_flat && degrees == 0) // as if there were none
+        return;
     if (!(degrees > 0 && (is_flat ? degrees < 180 : degrees <= 360)))
         reader.fail(at, fmt::format("found a camera's angle of {}, expected one above 0 and {}",
                                     degrees, is_flat ? "below 180" : "up to 360"));

@@ -79,7 +79,7 @@ Value parse_array(Reader& reader) {
 
 Value parse_layers(Reader& reader) {
     Texture texture = parse_texture(reader);
-    while (reader.peek_operator().is("texture")) {
+    while (reader.peek_layer().is("texture")) {
         reader.next();
         texture = layered(reader, parse_texture(reader), texture);
     }

@@ -77,13 +77,22 @@ TEST(PovDirectives, DeclarationsNeedNoSemicolon) {
     EXPECT_VALUE(1, "1", "declare Old = 3 /* a /* nested */ comment */");
 }
 
-TEST(PovDirectives, MacrosTakeTheVariableThatEndsBeforeThem) {
-    // The macro is found while the texture's next layer is looked for.
-    const Result<Scene> scene =
-        parsed_scene("#macro M(Look) sphere { 0, 1 texture { Look } } #end\n"
-                     "#declare T = texture { pigment { rgb x } }\nM(T)");
-    ASSERT_TRUE(scene) << scene.error().message;
-    EXPECT_EQ(scene->materials.at(0).color, vec3(1, 0, 0));
+TEST(PovDirectives, MacrosBehindATextureRunOnceItIsDeclared) {
+    const std::string red = " = texture { pigment { rgb x } }\n";
+    const std::string uses =
+        "#macro M() #local B = sphere { 0, 1 texture { T } } object { B } #end\n";
+    for (const std::string& text :
+         {"#macro M(Look) sphere { 0, 1 texture { Look } } #end #declare T" + red + "M(T)",
+          uses + "#declare T" + red + "M()", uses + "#macro N() #local T" + red + "M() #end N()",
+          uses + "#declare T" + red + "texture { pigment { rgbt 1 } }\nM()",
+          uses + "#declare T = texture { pigment { rgb y } } #declare T" + red + "M()",
+          "#macro M() #declare T" + red +
+              "#end #declare T = texture { pigment { rgb y } }\nM() sphere { 0, 1 texture { T } "
+              "}"}) {
+        const Result<Scene> scene = parsed_scene(text);
+        ASSERT_TRUE(scene) << scene.error().message << text;
+        EXPECT_EQ(scene->materials.at(0).color, vec3(1, 0, 0)) << text;
+    }
 }
 
 TEST(PovDirectives, WhatStandsBehindANameMayChangeIt) {

@@ -59,7 +59,7 @@ void Reader::open(std::unique_ptr<SourceFile> file) {
 
 Token Reader::next() {
     if (back_.empty())
-        return step(/* hold_directives= */ false);
+        return step(Hold::Nothing);
     const Token token = back_.back();
     back_.pop_back();
     return token;
@@ -67,14 +67,14 @@ Token Reader::next() {
 
 const Token& Reader::peek() {
     if (back_.empty())
-        back_.push_back(step(/* hold_directives= */ false));
+        back_.push_back(step(Hold::Nothing));
     return back_.back();
 }
 
-Token Reader::peek_operator() {
+Token Reader::peek_held(Hold hold) {
     if (!back_.empty())
         return back_.back();
-    const Token token = step(/* hold_directives= */ true);
+    const Token token = step(hold);
     if (token.kind != TokenKind::Directive)
         back_.push_back(token);
     return token;
@@ -90,16 +90,20 @@ bool Reader::ends_value() const {
     return frames_.size() < obeys_->frames || frames_.back().open.size() <= obeys_->blocks;
 }
 
-Token Reader::step(bool hold_directives) {
+Token Reader::step(Hold hold) {
+    const auto is_held = [&](Hold from) {
+        if (hold < from || !ends_value())
+            return false;
+        assert(frame().at > 0);
+        --frame().at;
+        return true;
+    };
     for (;;) {
         Token token = raw();
         last_ = token.place;
         if (token.kind == TokenKind::Directive) {
-            if (hold_directives && ends_value()) {
-                assert(frame().at > 0);
-                --frame().at;
+            if (is_held(Hold::Directives))
                 return token;
-            }
             obey(token);
             if (!back_.empty()) // the token that ended the directive's expression
                 return next();
@@ -108,6 +112,10 @@ Token Reader::step(bool hold_directives) {
         if (token.kind == TokenKind::Name && !token.name->is_keyword)
             if (const Slot* slot = find(token.name))
                 if (const auto* macro = std::get_if<const Macro*>(&slot->value)) {
+                    if (is_held(Hold::DirectivesAndMacros)) {
+                        token.kind = TokenKind::Directive;
+                        return token;
+                    }
                     call(token, **macro);
                     continue;
                 }

@@ -91,7 +91,10 @@ public:
     /// Returns the next token where it may be an operator; next() then takes it. A directive ends
     /// the value of another one, such as #declare: it is returned, but neither obeyed nor taken. In
     /// brackets, in a macro that gives the value and outside of directives it is obeyed.
-    Token peek_operator();
+    Token peek_operator() { return peek_held(Hold::Directives); }
+    /// Returns the next token where it may be another layer of a texture, likewise. A macro ends
+    /// the value too, so that it runs when the texture has been declared.
+    Token peek_layer() { return peek_held(Hold::DirectivesAndMacros); }
 
     /// Takes the sign `c`, or throws ParseError.
     void expect(char c, std::string_view after);
@@ -209,7 +212,10 @@ private:
 
     Token raw();
     const Token& peek_raw() const;
-    Token step(bool hold_directives);
+    /// What ends the value of a directive, and is then neither obeyed nor taken.
+    enum class Hold { Nothing, Directives, DirectivesAndMacros };
+    Token step(Hold hold);
+    Token peek_held(Hold hold);
     /// Returns whether a directive that comes now ends the value of the one that is being obeyed.
     bool ends_value() const;
     Name* raw_name(std::string_view after);
