@@ -45,6 +45,14 @@ public:
         }
     }
 
+    /// Returns the indices of the boxes that touch `box`, in order.
+    std::vector<uint32_t> touching(const Box& box) const {
+        std::vector<uint32_t> found;
+        visit(box, [&](uint32_t i) { found.push_back(i); });
+        std::ranges::sort(found);
+        return found;
+    }
+
 private:
     struct Node {
         Box box;

@@ -42,13 +42,20 @@ std::array<Plane, 3> walls_of(const GridTriangle& t, const Plane& plane) {
 
 CutTriangle::CutTriangle(const GridTriangle& triangle, const Plane& plane, Pool& pool)
     : plane_(&plane), pool_(pool) {
-    Part whole;
+    Polygon whole;
     const std::array<Plane, 3> walls = walls_of(triangle, plane);
     for (size_t i = 0; i < 3; ++i) {
-        whole.polygon.points.push_back(pool.keep(point_of(triangle[i])));
-        whole.polygon.edges.push_back({pool.keep(walls[i]), false});
+        whole.points.push_back(pool.keep(point_of(triangle[i])));
+        whole.edges.push_back({pool.keep(walls[i]), false});
     }
-    parts_.push_back(std::move(whole));
+    parts_.push_back(part_of(std::move(whole)));
+}
+
+CutTriangle::Part CutTriangle::part_of(Polygon polygon) {
+    Box box;
+    for (const Point* p : polygon.points)
+        box.add(p->near);
+    return {std::move(polygon), box.padded(1)};
 }
 
 void CutTriangle::cut(const GridTriangle& other, const Plane& other_plane) {
@@ -60,22 +67,25 @@ void CutTriangle::cut(const GridTriangle& other, const Plane& other_plane) {
         const Plane* kept[3] = {pool_.keep(walls[0]), pool_.keep(walls[1]), pool_.keep(walls[2])};
         cut_around(0, other, kept);
     } else
-        cut_across(0, pool_.keep(other_plane), walls);
+        cut_across(0, box_of(other), pool_.keep(other_plane), walls);
 }
 
-void CutTriangle::cut_across(size_t part, const Plane* by, std::span<const Plane> walls) {
-    if (apart(parts_[part].polygon.points, walls))
+void CutTriangle::cut_across(size_t part, const Box& other, const Plane* by,
+                             std::span<const Plane> walls) {
+    if (!parts_[part].box.touches(other) || apart(parts_[part].polygon.points, walls))
         return;
     if (parts_[part].above == 0) {
         halve(part, by, walls);
         return;
     }
-    cut_across(parts_[part].above, by, walls);
-    cut_across(parts_[part].below, by, walls);
+    cut_across(parts_[part].above, other, by, walls);
+    cut_across(parts_[part].below, other, by, walls);
 }
 
 void CutTriangle::cut_around(size_t part, const GridTriangle& other,
                              std::span<const Plane* const> walls) {
+    if (!parts_[part].box.touches(box_of(other)))
+        return;
     if (parts_[part].above != 0) {
         const size_t above = parts_[part].above, below = parts_[part].below;
         cut_around(above, other, walls);
@@ -146,7 +156,7 @@ bool CutTriangle::halve(size_t part, const Plane* by, std::span<const Plane> wal
         return false;
     for (const int half : {0, 1}) {
         (half == 0 ? parts_[part].above : parts_[part].below) = parts_.size();
-        parts_.push_back({std::move(halves[half])});
+        parts_.push_back(part_of(std::move(halves[half])));
     }
     return true;
 }

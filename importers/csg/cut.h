@@ -36,6 +36,7 @@ class CutTriangle {
 public:
     struct Part {
         Polygon polygon;
+        Box box;                     // around it, and a step of the grid larger
         size_t above = 0, below = 0; // the numbers of the two halves, or 0 if the part is whole
     };
 
@@ -49,7 +50,8 @@ public:
     const Plane& plane() const { return *plane_; }
 
 private:
-    void cut_across(size_t part, const Plane* by, std::span<const Plane> walls);
+    static Part part_of(Polygon polygon);
+    void cut_across(size_t part, const Box& other, const Plane* by, std::span<const Plane> walls);
     void cut_around(size_t part, const GridTriangle& other, std::span<const Plane* const> walls);
     /// Cuts the part by a plane. Returns false and cuts nothing if the plane does not run through
     /// the part, or only outside the walls.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reads implicit shapes: blob, quadric, cubic, quartic, poly and isosurface.
+#include "importers/csg/box_tree.h"
 #include "importers/csg/csg.h"
 #include "importers/pov/parse/blended_texture.h"
 #include "importers/pov/parse/parse_object.h"
@@ -59,6 +60,8 @@ struct Component {
     Box box;
 
     double operator()(const dvec3& world) const {
+        if (!box.contains(world))
+            return 0;
         const dvec3 p(to_own * dvec4(world, 1));
         const dvec3 way = b - a;
         const double square = glm::dot(way, way);
@@ -187,10 +190,13 @@ void blend_textures(Reader& reader, const Components& parts,
 Field blob_field(const Components& parts, double threshold) {
     Field field;
     field.value = blob_value(parts, threshold);
-    field.within = [&parts, threshold](const Box& asked) {
+    std::vector<Box> boxes;
+    for (const Component& part : parts)
+        boxes.push_back(part.box);
+    field.within = [&parts, tree = csg::BoxTree(boxes), threshold](const Box& asked) {
         Components near;
-        std::copy_if(parts.begin(), parts.end(), std::back_inserter(near),
-                     [&](const Component& part) { return part.box.touches(asked); });
+        for (const uint32_t i : tree.touching(asked))
+            near.push_back(parts[i]);
         return blob_value(std::move(near), threshold);
     };
     return field;

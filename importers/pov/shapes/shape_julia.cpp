@@ -10,6 +10,7 @@
 #include <cmath>
 #include <complex>
 #include <string_view>
+#include <utility>
 
 namespace ovc::pov {
 
@@ -22,45 +23,46 @@ double square_of(const Point4& p) {
     return p[0] * p[0] + p[1] * p[1] + p[2] * p[2] + p[3] * p[3];
 }
 
+using ComplexFunction = Complex (*)(const Complex&);
+constexpr std::pair<std::string_view, ComplexFunction> kFunctions[] = {
+    {"sqr", [](const Complex& x) { return x * x; }},
+    {"cube", [](const Complex& x) { return x * x * x; }},
+    {"exp", [](const Complex& x) { return std::exp(x); }},
+    {"reciprocal", [](const Complex& x) { return 1.0 / x; }},
+    {"sin", [](const Complex& x) { return std::sin(x); }},
+    {"asin", [](const Complex& x) { return std::asin(x); }},
+    {"sinh", [](const Complex& x) { return std::sinh(x); }},
+    {"asinh", [](const Complex& x) { return std::asinh(x); }},
+    {"cos", [](const Complex& x) { return std::cos(x); }},
+    {"acos", [](const Complex& x) { return std::acos(x); }},
+    {"cosh", [](const Complex& x) { return std::cosh(x); }},
+    {"acosh", [](const Complex& x) { return std::acosh(x); }},
+    {"tan", [](const Complex& x) { return std::tan(x); }},
+    {"atan", [](const Complex& x) { return std::atan(x); }},
+    {"tanh", [](const Complex& x) { return std::tanh(x); }},
+    {"atanh", [](const Complex& x) { return std::atanh(x); }},
+    {"ln", [](const Complex& x) { return std::log(x); }}};
+constexpr ComplexFunction kSquare = kFunctions[0].second, kCube = kFunctions[1].second;
+
 struct JuliaSet {
     Point4 c{};
     Point4 normal{0, 0, 0, 1}; // of the hyperplane, of any length, whose distance is
     double distance = 0;       // from the origin
     int iterations = 20;
     bool quaternions = true;
-    std::string_view function = "sqr";
+    ComplexFunction function = kSquare; // null: a power
     Complex power = 0;
 
     Point4 of_quaternion(const Point4& p) const {
         const double a = p[0], rest = square_of(p) - a * a;
-        const bool cube = function == "cube";
+        const bool cube = function == kCube;
         const double real = cube ? a * (a * a - 3 * rest) : a * a - rest;
         const double along = cube ? 3 * a * a - rest : 2 * a;
         return {real, along * p[1], along * p[2], along * p[3]};
     }
 
     Complex of_complex(const Complex& z) const {
-        static constexpr std::pair<std::string_view, Complex (*)(const Complex&)> kFunctions[] = {
-            {"cube", [](const Complex& x) { return x * x * x; }},
-            {"exp", [](const Complex& x) { return std::exp(x); }},
-            {"reciprocal", [](const Complex& x) { return 1.0 / x; }},
-            {"sin", [](const Complex& x) { return std::sin(x); }},
-            {"asin", [](const Complex& x) { return std::asin(x); }},
-            {"sinh", [](const Complex& x) { return std::sinh(x); }},
-            {"asinh", [](const Complex& x) { return std::asinh(x); }},
-            {"cos", [](const Complex& x) { return std::cos(x); }},
-            {"acos", [](const Complex& x) { return std::acos(x); }},
-            {"cosh", [](const Complex& x) { return std::cosh(x); }},
-            {"acosh", [](const Complex& x) { return std::acosh(x); }},
-            {"tan", [](const Complex& x) { return std::tan(x); }},
-            {"atan", [](const Complex& x) { return std::atan(x); }},
-            {"tanh", [](const Complex& x) { return std::tanh(x); }},
-            {"atanh", [](const Complex& x) { return std::atanh(x); }},
-            {"ln", [](const Complex& x) { return std::log(x); }}};
-        for (const auto& [name, call] : kFunctions)
-            if (name == function)
-                return call(z);
-        return function == "pwr" ? std::pow(z, power) : z * z;
+        return function ? function(z) : std::pow(z, power);
     }
 
     /// Hypercomplex numbers are pairs of complex ones: those by (1 + k) / 2 and by (1 - k) / 2.
@@ -88,6 +90,12 @@ struct JuliaSet {
             square = square_of(z);
         }
         return square;
+    }
+
+    /// Returns whether the last iteration does not reach the distance of no return.
+    bool holds(const dvec3& at) const {
+        const double limit = farthest() * farthest();
+        return square_after(at, iterations - 1, limit) < limit;
     }
 
     /// Returns a number that is 0 where the last iteration reaches the distance of no return, and
@@ -122,17 +130,14 @@ Point4 parse_point(Reader& reader) {
 
 /// Takes the name of a function that is iterated. Returns false where none is next.
 bool take_function(Reader& reader, JuliaSet& set) {
-    static constexpr std::string_view kNames[] = {
-        "sqr",  "cube", "exp",   "reciprocal", "sin",  "asin", "sinh",  "asinh", "cos",
-        "acos", "cosh", "acosh", "tan",        "atan", "tanh", "atanh", "ln"};
-    for (const std::string_view name : kNames)
+    for (const auto& [name, function] : kFunctions)
         if (reader.take(name)) {
-            set.function = name;
+            set.function = function;
             return true;
         }
     if (!reader.take("pwr"))
         return false;
-    set.function = "pwr";
+    set.function = nullptr;
     reader.expect('(', "pwr");
     const double real = parse_float(reader);
     reader.take_comma();
@@ -151,7 +156,7 @@ Box box_of(const JuliaSet& set) {
             for (int i = -kHalf; i <= kHalf; ++i)
                 for (int j = -kHalf; j <= kHalf; ++j) {
                     const dvec3 at = step * dvec3(i, j, double(k) - kHalf);
-                    if (set(at) < 0)
+                    if (!layers[k].contains(at) && set.holds(at))
                         layers[k].add(at);
                 }
     });
@@ -197,7 +202,7 @@ Shape parse_julia_fractal(Reader& reader) {
         } else if (!take_function(reader, set) && !reader.take(','))
             break;
     }
-    if (set.quaternions && set.function != "sqr" && set.function != "cube")
+    if (set.quaternions && set.function != kSquare && set.function != kCube)
         reader.fail(place, "found a function of quaternions other than sqr and cube");
     if (!(std::abs(set.normal[3]) > 0))
         reader.fail(place, "found a slice whose fourth component is 0");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reads sphere_sweep: the space that a ball fills which moves along a spline and whose radius
 // follows one too.
+#include "importers/csg/box_tree.h"
 #include "importers/pov/shapes/implicit.h"
 #include "importers/pov/shapes/shape.h"
 
@@ -103,12 +104,14 @@ std::function<double(const dvec3&)> distance_to(Capsules capsules) {
 Field field_of(const Capsules& capsules) {
     Field field;
     field.value = distance_to(capsules);
-    field.within = [&capsules](const Box& asked) {
+    std::vector<Box> boxes;
+    for (const TaperedCapsule& capsule : capsules)
+        boxes.push_back(capsule.box());
+    field.within = [&capsules, tree = csg::BoxTree(boxes)](const Box& asked) {
         // Those that may be the nearest to a point of the box on either side of the surface.
-        const Box around = asked.padded(max_component(asked.extent()));
         Capsules near;
-        std::copy_if(capsules.begin(), capsules.end(), std::back_inserter(near),
-                     [&](const TaperedCapsule& capsule) { return capsule.box().touches(around); });
+        for (const uint32_t i : tree.touching(asked.padded(max_component(asked.extent()))))
+            near.push_back(capsules[i]);
         return distance_to(std::move(near));
     };
     return field;
