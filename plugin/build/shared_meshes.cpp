@@ -7,6 +7,8 @@
 #include "gpu/page/top_level.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <map>
 #include <span>
 #include <utility>
@@ -61,17 +63,26 @@ std::vector<std::vector<uint32_t>> by_mesh(const Soup& soup) {
     return meshes;
 }
 
+/// Returns the transform's numbers as bits, which have an order where a product has come to be NaN,
+/// too. -0 is 0.
+std::array<uint64_t, 12> bits_of(const Transform& transform) {
+    std::array<uint64_t, 12> bits;
+    for (size_t i = 0; i < bits.size(); ++i)
+        bits[i] = std::bit_cast<uint64_t>(transform.rows[i / 4][i % 4] + 0.0);
+    return bits;
+}
+
 /// Takes out the chunks that lie exactly where one before them does.
 void take_copies_out(const Soup& soup, std::vector<uint32_t>& chunks, Placed& placed) {
-    std::map<decltype(Transform::rows), Placed::Copies> places;
+    std::map<std::array<uint64_t, 12>, Placed::Copies> places;
     std::vector<uint32_t> apart;
     for (const uint32_t chunk : chunks) {
-        Placed::Copies& copies = places[or_identity(soup.chunks[chunk].transform()).rows];
+        Placed::Copies& copies = places[bits_of(or_identity(soup.chunks[chunk].transform()))];
         if (copies.empty())
             apart.push_back(chunk);
         copies.push_back(chunk);
     }
-    for (auto& [rows, copies] : places)
+    for (auto& [bits, copies] : places)
         if (copies.size() > 1)
             placed.copies.push_back(std::move(copies));
     chunks = std::move(apart);

@@ -179,5 +179,23 @@ TEST_F(Instances, InOnePlaceAreOne) {
     expect_brute_force_with_skips(many, std::vector<Ray>(rays.begin(), rays.begin() + 60), 13);
 }
 
+/// A transform whose product is NaN is equal to none.
+TEST_F(Instances, OfAProductThatIsNaNHideNoOthers) {
+    Random random(14);
+    World w = world();
+    const auto corners = random_corners<vec3>(random, 200, 0.3);
+    const uint32_t mesh = w.add(corners, dvec3(0), nullptr, OVC_MESH_TEMPLATE);
+    const Matrix huge = scale(dvec3(1e200)), flat = scale(dvec3(0)), there = shift(dvec3(0));
+    const uint32_t first = w.instance(mesh, &huge), second = w.instance(first, &huge);
+    w.instance(second, &flat);
+    w.remove(first);
+    w.remove(second);
+    for (int i = 0; i < 2; ++i)
+        w.instance(mesh, &there);
+    w.commit();
+    EXPECT_EQ(w.statistics().dropped_not_finite, 200);
+    expect_brute_force(w, rays_at(w.expected, 500, 15), 30);
+}
+
 } // namespace
 } // namespace ovc
