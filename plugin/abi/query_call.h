@@ -7,10 +7,9 @@
 #include "core/text/format_text.h"
 #include "plugin/abi/asked_filter.h"
 #include "plugin/abi/scene_call.h"
+#include "plugin/abi/struct_size.h"
 
-#include <algorithm>
 #include <cstddef>
-#include <cstring>
 
 namespace ovc {
 
@@ -22,17 +21,9 @@ static_assert(sizeof(ovc_ray_float) == sizeof(FloatRay) &&
 /// Returns the caller's query with defaults for the fields that it lacks, or for all where it is
 /// NULL. Throws a Failure for a query that is wrong.
 inline ovc_query complete(const ovc_query* query) {
-    ovc_query all{};
-    all.struct_size = sizeof(all);
     if (!query)
-        return all;
-    constexpr size_t sizes[] = {offsetof(ovc_query, leaf), offsetof(ovc_query, flagged),
-                                offsetof(ovc_query, ray_format), offsetof(ovc_query, after),
-                                sizeof(ovc_query)};
-    if (std::find(std::begin(sizes), std::end(sizes), query->struct_size) == std::end(sizes))
-        invalid(format_text("ovc_query.struct_size is {}, expected sizeof(ovc_query) = {}",
-                            query->struct_size, sizeof(ovc_query)));
-    std::memcpy(&all, query, query->struct_size);
+        return {.struct_size = sizeof(ovc_query)};
+    const ovc_query all = whole("ovc_query", query, offsetof(ovc_query, leaf));
     if (all.ray_format > OVC_RAY_FLOAT)
         invalid(format_text("ovc_query.ray_format is {}, expected 0 or 1", all.ray_format));
     if (all.reserved)

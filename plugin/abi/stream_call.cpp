@@ -95,10 +95,7 @@ ovc_result stream(ovc_scene scene, const ovc_stream_host* host) {
     return on_scene(scene, "stream", [&] {
         if (!host)
             invalid("stream: host is NULL");
-        if (host->struct_size != sizeof(ovc_stream_host))
-            invalid(format_text(
-                "ovc_stream_host.struct_size is {}, expected sizeof(ovc_stream_host) = {}",
-                host->struct_size, sizeof(ovc_stream_host)));
+        check_size<ovc_stream_host>("ovc_stream_host", host->struct_size);
         if (!host->more || !host->answered)
             invalid("ovc_stream_host.more or answered is NULL");
         Structure& structure = committed(scene, "stream");

@@ -11,12 +11,12 @@
 
 namespace ovc {
 
-/// Throws a Failure for a struct_size that is neither that of this header nor of an earlier one.
-/// min_size: the size of T in the first header that had it.
+/// Throws a Failure for a struct_size that is neither that of this header nor of an earlier one,
+/// whose fields are whole. min_size: the size of T in the first header that had it.
 template <class T>
 void check_size(const char* name, size_t size, size_t min_size = sizeof(T)) {
     assert(min_size <= sizeof(T));
-    if (size < min_size || size > sizeof(T))
+    if (size < min_size || size > sizeof(T) || size % alignof(T) != 0)
         throw Failure{OVC_ERROR_INVALID_ARGUMENT,
                       format_text("{}.struct_size is {}, expected sizeof({}) = {}", name, size,
                                   name, sizeof(T))};

@@ -71,6 +71,8 @@ Misuses misuse_describe_device(Subject& s) {
     wrong.without_device("device NULL", api().describe_device(nullptr, &unsized));
     wrong.argument("info NULL", api().describe_device(s.device, nullptr));
     wrong.argument("struct_size 0", api().describe_device(s.device, &unsized));
+    ovc_device_info odd{sizeof(ovc_device_info) - 1};
+    wrong.argument("struct_size within a field", api().describe_device(s.device, &odd));
     return wrong.found();
 }
 

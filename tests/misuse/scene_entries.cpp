@@ -28,6 +28,7 @@ Misuses misuse_create_scene(Subject& s) {
     };
     with("struct_size 0", [](auto& c) { c.struct_size = 0; });
     with("struct_size of a later header", [](auto& c) { c.struct_size += 8; });
+    with("struct_size within a field", [](auto& c) { c.struct_size -= 1; });
     with("precision", [](auto& c) { c.precision = 2; });
     with("kernel", [](auto& c) { c.kernel = 3; });
     with("structure", [](auto& c) { c.structure = ~0u; });
@@ -59,6 +60,8 @@ Misuses misuse_add_mesh(Subject& s) {
     };
     static const uint32_t indices[3] = {0, 1, ~0u};
     with("struct_size 0", [](auto& m) { m.struct_size = 0; });
+    with("struct_size within a field",
+         [](auto& m) { m.struct_size = offsetof(ovc_mesh, transform) + 1; });
     with("positions NULL", [](auto& m) { m.positions = nullptr; });
     with("stride 4", [](auto& m) { m.stride = 4; });
     with("half a triangle", [](auto& m) { m.vertex_count -= 1; });
