@@ -53,6 +53,18 @@ def count(name: str, value: int, most: int = 2**64 - 1) -> int:
     return number
 
 
+def text(name: str, value: str | int) -> bytes:
+    """Returns the value, text or a whole number, as the library takes it."""
+    try:
+        as_text = value if isinstance(value, str) else str(operator.index(value))
+    except TypeError:
+        raise TypeError(f"{name} must be text or a whole number, "
+                        f"not {type(value).__name__}") from None
+    if "\0" in as_text:
+        raise ValueError(f"{name} must be without NUL, not {as_text!r}")
+    return as_text.encode(errors="replace")
+
+
 def choice(name: str, value: str, choices: tuple[str, ...]) -> int:
     """Returns the value's place among the choices."""
     if value not in choices:

@@ -123,8 +123,8 @@ class Handle:
                         "and does not live on in its fork; "
                         "open one in the process that uses it")
         if is_called_back():
-            raise Error(f"a progress function may not use the {self._what}: "
-                        "the call that it tells of is still running")
+            raise Error(f"a function that the library calls may not use the {self._what}: "
+                        "the call that it belongs to is still running")
 
     @contextlib.contextmanager
     def use(self) -> Iterator[int | None]:

@@ -103,7 +103,7 @@ def _spread(name: str, values: NDArray[Any], shape: tuple[int, ...]) -> NDArray[
 def places_of(after: Hits, shape: tuple[int, ...]) -> NDArray[np.void]:
     if not isinstance(after, Hits):
         raise TypeError(f"after must be overcast.Hits, not {type(after).__name__}")
-    return _spread("after", after.records, shape)
+    return np.require(_spread("after", after.records, shape), HIT, ["C", "A"])
 
 
 def names_of(skip: Hits | ArrayLike, shape: tuple[int, ...]) -> NDArray[np.uint32]:

@@ -10,11 +10,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from ._arrays import numbers
 
-RAY = np.dtype([("origin", "f8", 3), ("t_min", "f8"), ("direction", "f8", 3), ("t_max", "f8")])
+RAY = np.dtype([("origin", "f8", 3), ("t_min", "f8"), ("direction", "f8", 3), ("t_max", "f8")],
+               align=True)  # without which NumPy takes records at any address for aligned
 """A ray: 64 bytes, the ovc_ray of the C header."""
 
 RAY_FLOAT = np.dtype([("origin", "f4", 3), ("t_min", "f4"), ("direction", "f4", 3),
-                      ("t_max", "f4")])
+                      ("t_max", "f4")], align=True)
 """The same in 32 bytes, the ovc_ray_float of the C header. The library converts its numbers to
 doubles, which is exact."""
 
@@ -63,4 +64,4 @@ def as_rays(records: NDArray[np.void]) -> NDArray[np.void]:
                  else type(records).__name__)
         raise TypeError("rays must be an array of overcast.RAY or RAY_FLOAT, "
                         f"as overcast.rays() makes it, not {found}")
-    return np.require(records, requirements=["C", "A"])
+    return np.require(records, FORMATS[FORMATS.index(records.dtype)], ["C", "A"])

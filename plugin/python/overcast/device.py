@@ -11,6 +11,7 @@ import os
 
 from . import _abi
 from ._arrays import count as counted
+from ._arrays import text
 from ._library import BoundToProcess, Handle, api, check
 
 _LOG = logging.getLogger("overcast")
@@ -79,9 +80,10 @@ class Device(BoundToProcess):
 
     def __init__(self, name: str | int | None = None, *, gpu_memory: int = 0,
                  threads: int = 0) -> None:
-        config = _abi.ovc_device_config(name=None if name is None else str(name).encode(), log=_log,
-                                        gpu_memory_bytes=counted("gpu_memory", gpu_memory),
-                                        threads=counted("threads", threads, most=2**32 - 1))
+        config = _abi.ovc_device_config(
+            name=None if name is None else text("name", name), log=_log,
+            gpu_memory_bytes=counted("gpu_memory", gpu_memory),
+            threads=counted("threads", threads, most=2**32 - 1))
         handle = ctypes.c_void_p()
         check(api().create_device(config, handle))
         self._handle = Handle("device", handle.value, api().destroy_device)

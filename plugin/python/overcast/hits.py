@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ._abi import NONE
 
-HIT = np.dtype([("t", "f8"), ("u", "f8"), ("v", "f8"), ("mesh", "u4"), ("prim", "u4")])
+HIT = np.dtype([("t", "f8"), ("u", "f8"), ("v", "f8"), ("mesh", "u4"), ("prim", "u4")], align=True)
 """A hit: 32 bytes, the ovc_hit of the C header."""
 
 
@@ -27,6 +27,9 @@ class Hits:
     __slots__ = ("records",)
 
     def __init__(self, records: NDArray[np.void]) -> None:
+        if getattr(records, "dtype", None) != HIT:
+            raise TypeError("records must be an array of overcast.HIT, not "
+                            f"{getattr(records, 'dtype', type(records).__name__)}")
         self.records = records
 
     @property

@@ -202,8 +202,8 @@ class Scene(BoundToProcess):
         if (not isinstance(answers, np.ndarray)
                 or (answers.dtype, answers.shape) != (HIT, rays.shape)):
             raise ValueError(f"out must be Hits of the rays' shape {rays.shape}, not {out!r}")
-        if not answers.flags.carray:
-            raise ValueError("out must be Hits whose records are contiguous and writeable")
+        if not answers.view(HIT).flags.carray:
+            raise ValueError("out must be Hits whose records are contiguous, aligned and writeable")
         self._trace("intersect", rays, limits, answers)
         return hits
 
@@ -251,7 +251,8 @@ class Scene(BoundToProcess):
             self._trace("all_hits", rays, limits, most, hits.records, counts)
             return hits
         if max_hits is not None:
-            return find(count("max_hits", max_hits)), counts
+            most = sys.maxsize // (HIT.itemsize * max(rays.size, 1))
+            return find(count("max_hits", max_hits, most)), counts
         hits = find(_FIRST_HITS)
         most = int(counts.max(initial=0))
         return (hits[..., :most] if most <= _FIRST_HITS else find(most)), counts

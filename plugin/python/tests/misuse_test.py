@@ -80,6 +80,13 @@ class Sentences(unittest.TestCase):
              lambda: scene.intersect(*DOWN, out=two_hits())),
             (ValueError, "out must be Hits of the rays' shape (), not array(1)",
              lambda: scene.intersect(*DOWN, out=np.array(1))),
+            (TypeError, "records must be an array of overcast.HIT, not float64",
+             lambda: scene.intersect(*DOWN, after=overcast.Hits(np.zeros(())))),
+            (ValueError, "out must be Hits whose records are contiguous, aligned and writeable",
+             lambda: scene.intersect(*DOWN, out=overcast.Hits(amiss(overcast.HIT)))),
+            (ValueError,
+             f"max_hits must be from 0 to {sys.maxsize // 32}, not {sys.maxsize}",
+             lambda: scene.all_hits(*DOWN, max_hits=sys.maxsize)),
         ])
 
     def test_of_names_of_arguments(self):
@@ -165,6 +172,10 @@ class Sentences(unittest.TestCase):
              lambda: overcast.Scene(leaves=2**32)),
             (TypeError, "device must be an overcast.Device, not str",
              lambda: overcast.Scene("llvmpipe")),
+            (ValueError, "name must be without NUL, not '0\\x00'",
+             lambda: overcast.Device("0\0")),
+            (TypeError, "name must be text or a whole number, not bytes",
+             lambda: overcast.Device(b"llvmpipe")),
         ])
         with self.assertRaisesRegex(overcast.Error,
                                     "^a GPU budget of 1 bytes is too small: "
@@ -196,6 +207,12 @@ class Sentences(unittest.TestCase):
             scene.save("/no/such/folder/file")
 
 
+def amiss(dtype):
+    """Returns one zero record at an address that C would not put it at."""
+    room = np.zeros(dtype.itemsize + 1, np.uint8)
+    return room[1:].view(np.dtype(dtype.descr))[0:1].reshape(())
+
+
 def two_hits():
     records = np.zeros(2, overcast.HIT)
     records["mesh"][1] = overcast.NONE
@@ -218,8 +235,8 @@ class Running(unittest.TestCase):
         scene = overcast.Scene()
         scene.add(TRIANGLE)
         with self.assertRaisesRegex(overcast.Error,
-                                    "^a progress function may not use the scene: "
-                                    "the call that it tells of is"):
+                                    "^a function that the library calls may not use the scene: "
+                                    "the call that it belongs to is"):
             scene.commit(lambda done, stage: scene.statistics())
         scene.commit()
         self.assertTrue(scene.intersect(*DOWN).hit)

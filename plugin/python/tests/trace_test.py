@@ -9,6 +9,8 @@ import unittest
 import numpy as np
 
 import overcast
+from overcast._query import places_of
+from overcast._rays import as_rays
 from scenes_for_tests import brute_force, rays_at_unit_cube, skip_without_device, soup
 
 setUpModule = skip_without_device
@@ -176,6 +178,17 @@ class Nearest(unittest.TestCase):
             # An array that is not contiguous is copied.
             self.check(scene.intersect_rays(np.repeat(records, 2)[::2]))
             np.testing.assert_array_equal(scene.occluded_rays(records), self.prim != overcast.NONE)
+
+    def test_records_at_odd_addresses_are_copied(self):
+        rays = overcast.rays(self.origins, self.directions)
+        packed = np.frombuffer(b"x" + rays.tobytes(), np.dtype(overcast.RAY.descr), offset=1)
+        after = np.zeros(len(rays), overcast.HIT)
+        after["t"] = -np.inf
+        after = np.frombuffer(b"x" + after.tobytes(), np.dtype(overcast.HIT.descr), offset=1)
+        with scene_of([self.corners]) as scene:
+            self.check(scene.intersect_rays(packed, after=overcast.Hits(after)))
+        for records in (as_rays(packed), places_of(overcast.Hits(after), after.shape)):
+            self.assertEqual(records.ctypes.data % 8, 0)
 
     def test_float_records_are_the_doubles_that_they_are(self):
         with scene_of([self.corners]) as scene:
