@@ -377,7 +377,7 @@ typedef struct ovc_statistics {
     /* never hit, for they have no area */
     uint64_t dropped_degenerate;
     /* duplicates: in no leaf, because a smaller (mesh, prim) has the same three corners and
-     * answers for them */
+     * answers for them; with all triangles of an instance that lies where one before it does */
     uint64_t twins;
     /* of the level-1 tree */
     uint64_t leaves;
