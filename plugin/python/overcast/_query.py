@@ -80,7 +80,7 @@ def _asking(filter: Filter, raised: Raised) -> Callable[..., int]:
             numbers_of_rays = np.ctypeslib.as_array(
                 ctypes.cast(rays, ctypes.POINTER(ctypes.c_uint64)), (count,))
             size = count * HIT.itemsize
-            records = np.frombuffer((ctypes.c_char * size).from_address(hits), HIT)
+            records = np.frombuffer(memoryview((ctypes.c_char * size).from_address(hits)), HIT)
             # Copies, because a filter may keep what it is given, and the library's arrays end.
             answers = np.asarray(filter(numbers_of_rays.copy(), Hits(records.copy())))
             if answers.shape != (count,) or answers.dtype != np.bool_:
