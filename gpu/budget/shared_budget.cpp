@@ -16,7 +16,7 @@ using Use = SharedBudget::Use;
 uint64_t SharedBudget::sum_at(uint64_t level) const {
     uint64_t sum = 0;
     for (const Share* share : shares_)
-        sum += std::min(share->most_, std::max(share->least_, level));
+        sum += std::min(share->max_, std::max(share->min_, level));
     return sum;
 }
 
@@ -26,7 +26,7 @@ uint64_t SharedBudget::fair_bytes(const Share& share) const {
         const uint64_t middle = low + (high - low) / 2;
         (sum_at(middle) <= bytes_ ? low : high) = middle;
     }
-    return std::min(share.most_, std::max(share.least_, low));
+    return std::min(share.max_, std::max(share.min_, low));
 }
 
 /// Returns the bytes that others leave.
@@ -68,7 +68,7 @@ bool SharedBudget::grant(Share& share) {
     if (share.bytes_ >= fair - fair / 16) // all that was allocated goes where a share grows
         return true;
     const uint64_t bytes = make_room(share, fair) ? fair : free_bytes(share);
-    if (bytes < share.least_)
+    if (bytes < share.min_)
         return false;
     if (bytes > share.bytes_) {
         if (share.bytes_ > 0)
@@ -87,12 +87,12 @@ bool SharedBudget::nobody_works() const {
 
 /// Whether shares are waited for, none of which can be granted as others are used now.
 bool SharedBudget::nobody_may_begin() const {
-    uint64_t used = 0, least = ~uint64_t(0);
+    uint64_t used = 0, min = ~uint64_t(0);
     for (const Share* share : shares_) {
         used += share->user_ == std::thread::id() ? 0 : share->bytes_;
-        least = share->is_wanted_ ? std::min(least, share->least_) : least;
+        min = share->is_wanted_ ? std::min(min, share->min_) : min;
     }
-    return least != ~uint64_t(0) && least > bytes_ - used;
+    return min != ~uint64_t(0) && min > bytes_ - used;
 }
 
 bool SharedBudget::is_inside(std::thread::id thread) const {
@@ -130,12 +130,12 @@ Share::~Share() {
     std::erase(budget_.shares_, this);
 }
 
-void Share::demand(uint64_t least, uint64_t most) {
-    assert(least <= most);
+void Share::demand(uint64_t min, uint64_t max) {
+    assert(min <= max);
     const std::lock_guard lock(budget_.mutex_);
-    assert(budget_.bytes_ == 0 || least <= budget_.bytes_);
-    least_ = least;
-    most_ = most;
+    assert(budget_.bytes_ == 0 || min <= budget_.bytes_);
+    min_ = min;
+    max_ = max;
 }
 
 void Share::close() {
@@ -148,7 +148,7 @@ void Share::close() {
 
 Result<Use> Share::begin(const std::function<bool()>& goes_on) {
     if (budget_.bytes_ == 0) {
-        bytes_ = most_;
+        bytes_ = max_;
         return Use();
     }
     const std::thread::id me = std::this_thread::get_id();

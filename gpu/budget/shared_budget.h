@@ -68,10 +68,10 @@ public:
         ~Share();
         Share(const Share&) = delete;
 
-        /// Sets with how many bytes it is of use (least, at most the budget's) and what it has use
-        /// for (most). Call it before the first begin(), and whenever that changes; a share that is
+        /// Sets the bytes that it works with (min, at most the budget's) and those that it has use
+        /// for (max). Call it before the first begin(), and whenever that changes; a share that is
         /// open is closed for more only where that is worth it.
-        void demand(uint64_t least, uint64_t most);
+        void demand(uint64_t min, uint64_t max);
 
         /// Waits until the share can be used, first come, first served; others close where they
         /// must. bytes() tells what may be allocated from now on; where that has changed, the share
@@ -84,7 +84,7 @@ public:
         void close();
 
         uint64_t bytes() const { return bytes_; }
-        uint64_t most_bytes() const { return most_; }
+        uint64_t max_bytes() const { return max_; }
 
     private:
         friend class SharedBudget;
@@ -92,7 +92,7 @@ public:
 
         SharedBudget& budget_;
         const std::function<void()> close_;
-        uint64_t least_ = 0, most_ = 0;
+        uint64_t min_ = 0, max_ = 0;
         uint64_t bytes_ = 0;     // granted; 0: closed
         std::thread::id user_;   // the thread that is within a Use
         bool is_wanted_ = false; // a thread waits until it is granted

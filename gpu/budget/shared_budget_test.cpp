@@ -19,9 +19,9 @@ bool go_on() {
 
 /// A scene that allocates what its share allows.
 struct User {
-    User(SharedBudget& budget, uint64_t least, uint64_t most)
+    User(SharedBudget& budget, uint64_t min, uint64_t max)
         : share(budget, [this] { closed += allocated.exchange(0) > 0; }) {
-        share.demand(least, most);
+        share.demand(min, max);
     }
     Result<Use> begin() {
         Result<Use> use = share.begin(go_on);

@@ -55,22 +55,22 @@ MemoryPlan PassRunner::plan_within(uint64_t bytes) const {
 void PassRunner::set_plan(const MemoryPlan& whole) {
     demand(whole);
     plan_ = whole;
-    planned_ = share_.most_bytes();
+    planned_ = share_.max_bytes();
 }
 
 /// Says to the budget what the scene, as it is now, has use for.
 void PassRunner::demand(const MemoryPlan& whole) {
     const BuiltScene& scene = tracing_.scene;
     whole_ = whole;
-    const uint64_t most = scene.pages.empty() ? 0 : bytes_of(scene, whole);
-    uint64_t least = most;
-    if (gl_.budget().bytes() > 0 && most > 0) {
+    const uint64_t max = scene.pages.empty() ? 0 : bytes_of(scene, whole);
+    uint64_t min = max;
+    if (gl_.budget().bytes() > 0 && max > 0) {
         const uint64_t tables = bytes_of(scene, whole) - whole.ray_bytes() - whole.pool_bytes;
-        least = smallest_budget(scene.largest_page_bytes() + scene.top.room() + tables, gl_.info());
-        if (least >= most || !is_usable(scene.top, scene.pages, plan_within(least).pool()))
-            least = most; // its leaves were not cut for less
+        min = smallest_budget(scene.largest_page_bytes() + scene.top.room() + tables, gl_.info());
+        if (min >= max || !is_usable(scene.top, scene.pages, plan_within(min).pool()))
+            min = max; // its leaves were not cut for less
     }
-    share_.demand(least, most);
+    share_.demand(min, max);
 }
 
 Result<SharedBudget::Use> PassRunner::begin_use(BuildProgress* progress) {
