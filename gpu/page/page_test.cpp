@@ -5,8 +5,7 @@
 #include "core/system/parallel.h"
 #include "gpu/page/node_boxes.h"
 #include "gpu/page/page_check.h"
-#include "gpu/page/page_walk.h"
-#include "kdtree/test_soups.h"
+#include "gpu/page/test_walk.h"
 
 #include <gtest/gtest.h>
 
@@ -91,25 +90,7 @@ TEST(Page, WalkedInDoubleFindsWhatBruteForceFinds) {
         const Leaf& leaf = level1.leaves[0];
         const Page page = build_page(soup, Numbering(soup), leaf, nullptr, LoosePairs{true});
         const auto rays = test::unpleasant_rays(soup, 77, 800);
-        for (size_t i = 0; i < rays.size(); ++i) {
-            if (!rays[i].valid())
-                continue;
-            const PreparedRay p(rays[i]);
-            Nearest nearest(p);
-            walk_page(
-                page, leaf, p,
-                [&](uint32_t k) {
-                    const TriangleId id = Numbering(soup).id(k);
-                    nearest.offer(soup.triangle(id), id);
-                    return false;
-                },
-                [&] { return nearest.limit(); });
-            const Hit& found = nearest.hit();
-            const Hit expected = test::brute_force(soup, leaf.triangles, rays[i]);
-            ASSERT_TRUE(test::same(expected, found))
-                << name << " ray " << i << ": " << test::describe(expected) << " but found "
-                << test::describe(found);
-        }
+        ASSERT_NO_FATAL_FAILURE(test::expect_brute_force(name, soup, page, leaf, rays));
     }
 }
 

@@ -251,24 +251,4 @@ bool walk_tree_together(const TopLevel& top, UnitsOf&& units_of, const Leaf& sce
     return walk_units(units, 0, units_of, all, walked, visit, enter, limit);
 }
 
-/// Walks all pages, which are in memory, with one ray. Calls visit(i) and limit().
-template <class Visit, class Limit>
-bool walk_tree(const TopLevel& top, std::span<const Page> pages, const Leaf& scene,
-               const PreparedRay& p, Visit&& visit, Limit&& limit) {
-    return walk_tree_together(
-        top, [&](uint32_t page) { return pages[page].view().data(); }, scene, 1,
-        [&](uint32_t) -> const PreparedRay& { return p; },
-        [&](uint32_t i, RaySet) { return visit(i); }, [&](uint32_t, double) { return limit(); });
-}
-
-/// Walks one page with one ray. leaf: its box and frame.
-template <class Visit, class Limit>
-bool walk_page(const Page& page, const Leaf& leaf, const PreparedRay& p, Visit&& visit,
-               Limit&& limit) {
-    return walk_units(
-        page.view(), 0, NoPages(), 1, [&](uint32_t) { return walked_ray(leaf, p); },
-        [&](uint32_t i, RaySet) { return visit(i); }, [](uint32_t, RaySet) { return false; },
-        [&](uint32_t, double) { return limit(); });
-}
-
 } // namespace ovc

@@ -4,8 +4,7 @@
 #include "gpu/page/refit.h"
 
 #include "gpu/page/page_check.h"
-#include "gpu/page/page_walk.h"
-#include "kdtree/test_soups.h"
+#include "gpu/page/test_walk.h"
 
 #include <gtest/gtest.h>
 
@@ -53,25 +52,7 @@ struct OnePage {
 
     void expect_brute_force() {
         ASSERT_TRUE(is_walkable(page, uint32_t(soup.triangle_count())));
-        const auto rays = test::unpleasant_rays(soup, 5, 600);
-        for (size_t i = 0; i < rays.size(); ++i) {
-            if (!rays[i].valid())
-                continue;
-            const PreparedRay p(rays[i]);
-            Nearest nearest(p);
-            walk_page(
-                page, leaf, p,
-                [&](uint32_t number) {
-                    const TriangleId id = numbers.id(number);
-                    nearest.offer(soup.triangle(id), id);
-                    return false;
-                },
-                [&] { return nearest.limit(); });
-            const Hit expected = test::brute_force(soup, leaf.triangles, rays[i]);
-            ASSERT_TRUE(test::same(expected, nearest.hit()))
-                << "ray " << i << ": " << test::describe(expected) << " but found "
-                << test::describe(nearest.hit());
-        }
+        test::expect_brute_force("refitted", soup, page, leaf, test::unpleasant_rays(soup, 5, 600));
     }
 
     test::Random random{11};

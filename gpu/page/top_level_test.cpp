@@ -3,8 +3,7 @@
 // if pages are apart and if they lie in a pool.
 #include "gpu/page/top_level.h"
 
-#include "gpu/page/page_walk.h"
-#include "kdtree/test_soups.h"
+#include "gpu/page/test_walk.h"
 
 #include <gtest/gtest.h>
 
@@ -64,27 +63,15 @@ TEST_P(TopLevelTree, HoldsWhatBruteForceFinds) {
             continue;
         const Page pool = pool_of(built);
         const Leaf scene = scene_leaf(built.level1.bounds);
-        const Numbering numbers(soup);
         for (const Ray& ray : test::unpleasant_rays(soup, 78, 200)) {
             if (!ray.valid())
                 continue;
             const PreparedRay p(ray);
             const Hit expected = test::brute_force(soup, built.triangles, ray);
-            Nearest apart(p), together(p);
-            const auto offer_to = [&](Nearest& nearest) {
-                return [&](uint32_t number) {
-                    const TriangleId id = numbers.id(number);
-                    nearest.offer(soup.triangle(id), id);
-                    return false;
-                };
-            };
-            walk_tree(built.top, built.pages, scene, p, offer_to(apart),
-                      [&] { return apart.limit(); });
-            walk_page(pool, scene, p, offer_to(together), [&] { return together.limit(); });
-            ASSERT_TRUE(test::same(expected, apart.hit()))
-                << name << ": " << test::describe(expected);
-            ASSERT_TRUE(test::same(expected, together.hit()))
-                << name << ": " << test::describe(expected);
+            for (const Hit& found : {test::nearest_in_pages(soup, built.top, built.pages, scene, p),
+                                     test::nearest_in_page(soup, pool, scene, p)})
+                ASSERT_TRUE(test::same(expected, found))
+                    << name << ": " << test::describe(expected);
         }
     }
 }
@@ -99,23 +86,14 @@ TEST_P(TopLevelTree, LeadsThroughPortalsToWhatBruteForceFinds) {
         EXPECT_LE(built.top.portals.size(), 1 + parts);
         EXPECT_LE(built.top.tree.bytes(),
                   max_top_level_bytes(links * parts) + parts * (kMaxBytesPerPart - kPortalBytes));
-        const Numbering numbers(soup);
+        const Leaf scene = scene_leaf(built.level1.bounds);
         for (const Ray& ray : test::unpleasant_rays(soup, 79, 200)) {
             if (!ray.valid())
                 continue;
-            const PreparedRay p(ray);
-            Nearest nearest(p);
-            walk_tree(
-                built.top, built.pages, scene_leaf(built.level1.bounds), p,
-                [&](uint32_t number) {
-                    const TriangleId id = numbers.id(number);
-                    nearest.offer(soup.triangle(id), id);
-                    return false;
-                },
-                [&] { return nearest.limit(); });
+            const Hit found =
+                test::nearest_in_pages(soup, built.top, built.pages, scene, PreparedRay(ray));
             const Hit expected = test::brute_force(soup, built.triangles, ray);
-            ASSERT_TRUE(test::same(expected, nearest.hit()))
-                << name << ": " << test::describe(expected);
+            ASSERT_TRUE(test::same(expected, found)) << name << ": " << test::describe(expected);
         }
     }
 }
