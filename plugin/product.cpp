@@ -18,38 +18,35 @@ void check_config(const ovc_scene_config& config, const DeviceInfo& device) {
     check_two_level(config, device);
 }
 
-Result<std::unique_ptr<Structure>> make_structure(const Soup& soup, GlThread& gl,
-                                                  const ovc_scene_config& config,
-                                                  const LogSink& log, BuildProgress* progress,
+Result<std::unique_ptr<Structure>> make_structure(const Soup& soup, const BuildRequest& request,
                                                   LeafStore* store) {
-    TwoLevelOptions options = two_level_options(config);
+    TwoLevelOptions options = two_level_options(request.config);
     options.store = store;
-    Result<std::unique_ptr<TwoLevel>> built = TwoLevel::build(soup, gl, options, log, progress);
+    Result<std::unique_ptr<TwoLevel>> built =
+        TwoLevel::build(soup, request.gl, options, request.log, request.progress);
     if (!built)
         return built.error();
     return std::unique_ptr<Structure>(std::move(*built));
 }
 
-Result<ovc_plan> plan_structure(const Soup& soup, const DeviceInfo& device,
-                                const ovc_scene_config& config, BuildProgress* progress,
-                                LeafStore* store) {
-    return plan_two_level(soup, device, config, progress, store);
+Result<ovc_plan> plan_structure(const Soup& soup, const BuildRequest& request, LeafStore* store) {
+    return plan_two_level(soup, request.gl.info(), request.config, request.progress, store);
 }
 
-Result<Done> save_structure(const StreamedScene& scene, const DeviceInfo& device,
-                            const ovc_scene_config& config, const ByteSink& sink,
-                            const LogSink& log, BuildProgress* progress) {
+Result<Done> save_structure(const StreamedScene& scene, const BuildRequest& request,
+                            const ByteSink& sink) {
     const Result<StreamedLevels> saved =
-        save_streamed(scene, two_level_options(config), device, sink, log, progress);
+        save_streamed(scene, two_level_options(request.config), request.gl.info(), sink,
+                      request.log, request.progress);
     if (!saved)
         return saved.error();
     return Done{};
 }
 
 Result<ovc_plan> plan_streamed_structure(TriangleSource& source, uint64_t host_bytes,
-                                         const DeviceInfo& device, const ovc_scene_config& config,
-                                         BuildProgress* progress) {
-    return plan_streamed(source, host_bytes, two_level_options(config), device, progress);
+                                         const BuildRequest& request) {
+    return plan_streamed(source, host_bytes, two_level_options(request.config), request.gl.info(),
+                         request.progress);
 }
 
 } // namespace ovc

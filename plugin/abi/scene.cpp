@@ -33,10 +33,13 @@ bool update(ovc_scene_t& scene, BuildProgress* progress) {
     return true;
 }
 
+BuildRequest request_of(const ovc_scene_t& scene, BuildProgress* progress) {
+    return {*scene.device->gl, scene.config, scene.device->log, progress};
+}
+
 void build(ovc_scene_t& scene, BuildProgress* progress) {
     Result<std::unique_ptr<Structure>> built =
-        make_structure(scene.soup, *scene.device->gl, scene.config, scene.device->log, progress,
-                       scene.store.get());
+        make_structure(scene.soup, request_of(scene, progress), scene.store.get());
     check(built);
     if (progress)
         progress->finish(); // as in update()
@@ -120,8 +123,7 @@ ovc_result plan(ovc_scene scene, ovc_plan* plan) {
         if (scene->store && scene->structure)
             invalid("plan: the scene, which lies on a disk, is committed already");
         tell_plan(plan, scene->config, "plan", [&](BuildProgress* progress) {
-            return plan_structure(scene->soup, scene->device->gl->info(), scene->config, progress,
-                                  scene->store.get());
+            return plan_structure(scene->soup, request_of(*scene, progress), scene->store.get());
         });
     });
 }

@@ -147,7 +147,7 @@ ovc_result save_streamed(ovc_device device, const ovc_scene_config* config,
         with_progress(asked, "save_streamed", [&](BuildProgress* progress) {
             check(save_structure(
                 {source, scratch, host_bytes_of(scene), scene.keep_step ? &steps : nullptr},
-                device->gl->info(), asked, sink, device->log, progress));
+                {*device->gl, asked, device->log, progress}, sink));
             if (progress)
                 progress->finish(); // the last chance to be cancelled
         });
@@ -163,8 +163,8 @@ ovc_result plan_streamed(ovc_device device, const ovc_scene_config* config,
         HostSource source(scene);
         const LoopThreads::Scope threads(device->loops);
         tell_plan(plan, asked, "plan_streamed", [&](BuildProgress* progress) {
-            return plan_streamed_structure(source, host_bytes_of(scene), device->gl->info(), asked,
-                                           progress);
+            return plan_streamed_structure(source, host_bytes_of(scene),
+                                           {*device->gl, asked, device->log, progress});
         });
     });
 }

@@ -20,11 +20,10 @@ static constexpr uint64_t kLeavesPerRank = 8;
 namespace {
 
 /// Builds what is traced on this rank. An exception becomes an error, which the others learn of.
-Result<std::unique_ptr<TwoLevel>> built_here(const Soup& soup, GlThread& gl,
-                                             const TwoLevelOptions& options, const LogSink& log,
-                                             BuildProgress* progress) {
+Result<std::unique_ptr<TwoLevel>> built_here(const Soup& soup, const BuildRequest& request,
+                                             const TwoLevelOptions& options) {
     try {
-        return TwoLevel::build(soup, gl, options, log, progress);
+        return TwoLevel::build(soup, request.gl, options, request.log, request.progress);
     } catch (const Cancelled&) {
         return Error{"commit was cancelled", ErrorKind::Cancelled};
     } catch (...) {
@@ -65,10 +64,9 @@ void check_config(const ovc_scene_config& config, const DeviceInfo& device) {
     check_two_level(config, device);
 }
 
-Result<std::unique_ptr<Structure>> make_structure(const Soup& soup, GlThread& gl,
-                                                  const ovc_scene_config& config,
-                                                  const LogSink& log, BuildProgress* progress,
+Result<std::unique_ptr<Structure>> make_structure(const Soup& soup, const BuildRequest& request,
                                                   LeafStore* store) {
+    const ovc_scene_config& config = request.config;
     Result<std::unique_ptr<Transport>> transport =
         make_mpi_transport({config.communicator, config.rank_timeout});
     if (!transport)
@@ -77,7 +75,7 @@ Result<std::unique_ptr<Structure>> make_structure(const Soup& soup, GlThread& gl
     options.store = store;
     Notes notes(**transport);
     const Result<RankTerms::Own> terms =
-        agreed_terms(notes, **transport, terms_of(soup, gl.info(), config, options));
+        agreed_terms(notes, **transport, terms_of(soup, request.gl.info(), config, options));
     if (!terms)
         return terms.error();
     SharingOptions share{.rank = (*transport)->rank(),
@@ -86,12 +84,12 @@ Result<std::unique_ptr<Structure>> make_structure(const Soup& soup, GlThread& gl
                          .host_bytes = terms->host_bytes};
     share.shares.ranks = (*transport)->ranks();
     share.shares.sample = {reinterpret_cast<const Ray*>(config.sample), size_t(config.sample_rays)};
-    Sharing sharing(share, log);
+    Sharing sharing(share, request.log);
     if ((*transport)->ranks() > 1 && config.ranks_own != OVC_RANKS_OWN_ALL) {
         options.choose_pages = [&](const BuiltScene& scene) { return sharing.choose(scene); };
         cut_alike(*terms, (*transport)->ranks(), options);
     }
-    Result<std::unique_ptr<TwoLevel>> local = built_here(soup, gl, options, log, progress);
+    Result<std::unique_ptr<TwoLevel>> local = built_here(soup, request, options);
     const Result<Done> alike = check_shares(notes, **transport, sharing.checksum());
     if (const Result<Done> all =
             first_error(notes, **transport, local ? alike : Result<Done>(local.error()));
@@ -104,20 +102,16 @@ Result<std::unique_ptr<Structure>> make_structure(const Soup& soup, GlThread& gl
                           LoopThreads::of_this_thread()}));
 }
 
-Result<ovc_plan> plan_structure(const Soup& soup, const DeviceInfo& device,
-                                const ovc_scene_config& config, BuildProgress* progress,
-                                LeafStore* store) {
-    return plan_two_level(soup, device, config, progress, store);
+Result<ovc_plan> plan_structure(const Soup& soup, const BuildRequest& request, LeafStore* store) {
+    return plan_two_level(soup, request.gl.info(), request.config, request.progress, store);
 }
 
-Result<Done> save_structure(const StreamedScene&, const DeviceInfo&, const ovc_scene_config&,
-                            const ByteSink&, const LogSink&, BuildProgress*) {
+Result<Done> save_structure(const StreamedScene&, const BuildRequest&, const ByteSink&) {
     throw Failure{OVC_ERROR_INVALID_ARGUMENT,
                   "save_streamed: one process builds what is saved; libovercast.so does it"};
 }
 
-Result<ovc_plan> plan_streamed_structure(TriangleSource&, uint64_t, const DeviceInfo&,
-                                         const ovc_scene_config&, BuildProgress*) {
+Result<ovc_plan> plan_streamed_structure(TriangleSource&, uint64_t, const BuildRequest&) {
     throw Failure{OVC_ERROR_INVALID_ARGUMENT,
                   "plan_streamed: one process builds what is saved; libovercast.so plans it"};
 }

@@ -126,32 +126,35 @@ protected:
 /// and its enumerators.
 void check_config(const ovc_scene_config& config, const DeviceInfo& device);
 
-/// Builds the structure that the config asks for, which check_config() has let pass. The soup and
-/// the thread must outlive it, and so must the store, which reads a scene that lies on a disk.
-/// Error: the budget is too small, with the smallest that works, or GL refuses something. Throws
-/// Cancelled when `progress` is told to stop.
-Result<std::unique_ptr<Structure>>
-make_structure(const Soup& soup, GlThread& gl, const ovc_scene_config& config, const LogSink& log,
-               BuildProgress* progress = nullptr, LeafStore* store = nullptr);
+/// How a structure is to be built, whatever it is built of.
+struct BuildRequest {
+    GlThread& gl;                   // outlives what is built
+    const ovc_scene_config& config; // which check_config() has let pass
+    const LogSink& log;
+    BuildProgress* progress = nullptr; // throws Cancelled when it is told to stop
+};
+
+/// Builds the structure that the config asks for. The soup must outlive it, and so must the store,
+/// which reads a scene that lies on a disk. Error: the budget is too small, with the smallest that
+/// works, or GL refuses something.
+Result<std::unique_ptr<Structure>> make_structure(const Soup& soup, const BuildRequest& request,
+                                                  LeafStore* store = nullptr);
 
 /// Writes to the sink what save() of such a structure over the scene's meshes would, within the
 /// scene's host memory. Throws as make_structure() does, and Cancelled where a function of the
 /// caller's fails. Error: host or GPU memory is too small, or the structure cannot be saved.
-Result<Done> save_structure(const StreamedScene& scene, const DeviceInfo& device,
-                            const ovc_scene_config& config, const ByteSink& sink,
-                            const LogSink& log, BuildProgress* progress = nullptr);
+Result<Done> save_structure(const StreamedScene& scene, const BuildRequest& request,
+                            const ByteSink& sink);
 
 /// Tells what save_structure() would write of the source, within so many bytes of host memory;
 /// ovc_plan.seconds is left to the caller. Throws and fails as it does.
 Result<ovc_plan> plan_streamed_structure(TriangleSource& source, uint64_t host_bytes,
-                                         const DeviceInfo& device, const ovc_scene_config& config,
-                                         BuildProgress* progress = nullptr);
+                                         const BuildRequest& request);
 
 /// Tells what make_structure() would make of the soup, or of what the store reads; ovc_plan.seconds
 /// is left to the caller. Throws as make_structure() does. Error: the GPU's budget is too small for
 /// any scene, the structure cannot tell, or what the store reads is damaged.
-Result<ovc_plan> plan_structure(const Soup& soup, const DeviceInfo& device,
-                                const ovc_scene_config& config, BuildProgress* progress = nullptr,
+Result<ovc_plan> plan_structure(const Soup& soup, const BuildRequest& request,
                                 LeafStore* store = nullptr);
 
 } // namespace ovc

@@ -39,7 +39,7 @@ protected:
         config.leaves = variant.textures;
         config.gpu_memory_bytes = budget;
         config.precision = certify ? OVC_PRECISION_CERTIFIED : OVC_PRECISION_FAST;
-        return make_structure(soup, *gl, config, {});
+        return make_structure(soup, {*gl, config, {}});
     }
 
     std::unique_ptr<Structure> build(const Soup& soup, const Variant& variant, uint64_t budget = 0,

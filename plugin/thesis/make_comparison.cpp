@@ -78,37 +78,33 @@ void check_config(const ovc_scene_config& config, const DeviceInfo& device) {
                            config.leaves, thesis::kMaxTextures));
 }
 
-Result<ovc_plan> plan_structure(const Soup&, const DeviceInfo&, const ovc_scene_config& config,
-                                BuildProgress*, LeafStore*) {
+Result<ovc_plan> plan_structure(const Soup&, const BuildRequest& request, LeafStore*) {
     refuse(format_text("plan: what {} takes is known only once it is built; two-level "
                        "(libovercast.so) can tell before",
-                       thesis::name_of(ovc_structure(config.structure))));
+                       thesis::name_of(ovc_structure(request.config.structure))));
 }
 
-Result<Done> save_structure(const StreamedScene&, const DeviceInfo&, const ovc_scene_config&,
-                            const ByteSink&, const LogSink&, BuildProgress*) {
+Result<Done> save_structure(const StreamedScene&, const BuildRequest&, const ByteSink&) {
     refuse("save_streamed: only two-level (libovercast.so) can be saved");
 }
 
-Result<ovc_plan> plan_streamed_structure(TriangleSource&, uint64_t, const DeviceInfo&,
-                                         const ovc_scene_config&, BuildProgress*) {
+Result<ovc_plan> plan_streamed_structure(TriangleSource&, uint64_t, const BuildRequest&) {
     refuse("plan_streamed: only two-level (libovercast.so) can be saved");
 }
 
-Result<std::unique_ptr<Structure>> make_structure(const Soup& soup, GlThread& gl,
-                                                  const ovc_scene_config& config,
-                                                  const LogSink& log, BuildProgress* progress,
+Result<std::unique_ptr<Structure>> make_structure(const Soup& soup, const BuildRequest& request,
                                                   [[maybe_unused]] LeafStore* store) {
     assert(!store);
+    const ovc_scene_config& config = request.config;
     if (config.structure == OVC_STRUCTURE_THESIS_TWO_LEVEL)
-        return make_queued(soup, gl, config, log, progress);
+        return make_queued(soup, request.gl, config, request.log, request.progress);
     thesis::RunnerOptions options;
     options.structure = ovc_structure(config.structure);
-    options.budget_bytes =
-        config.gpu_memory_bytes ? config.gpu_memory_bytes : gl.info().default_budget_bytes();
+    options.budget_bytes = config.gpu_memory_bytes ? config.gpu_memory_bytes
+                                                   : request.gl.info().default_budget_bytes();
     options.textures = std::max(config.leaves, 1u);
     options.certify = config.precision != OVC_PRECISION_FAST;
-    return thesis::Comparison::build(soup, gl, options, log, progress);
+    return thesis::Comparison::build(soup, request.gl, options, request.log, request.progress);
 }
 
 } // namespace ovc

@@ -35,7 +35,7 @@ ovc_scene_config config_of(const Kind& kind, const Limits& limits = {}) {
 class Queued : public test::OnGl {
 protected:
     std::unique_ptr<Structure> build(const Soup& soup, const ovc_scene_config& config) {
-        Result<std::unique_ptr<Structure>> made = make_structure(soup, *gl, config, {});
+        Result<std::unique_ptr<Structure>> made = make_structure(soup, {*gl, config, {}});
         EXPECT_TRUE(made) << made.error().message;
         return made ? std::move(*made) : nullptr;
     }
