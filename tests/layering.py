@@ -49,7 +49,7 @@ PARTS = {
                          "plugin/out_of_core", "plugin/leaf_store", "plugin/fallback",
                          "plugin/resolve"},
     "plugin/ranks": {"plugin", "plugin/abi", "plugin/structure", "plugin/build", "plugin/plan",
-                     "plugin/two_level", "plugin/ranks/transport"},
+                     "plugin/two_level", "plugin/leaf_store", "plugin/ranks/transport"},
     "plugin/ranks/transport": set(),
 }
 

@@ -45,6 +45,10 @@ std::string why_refused(const Transport& transport, uint32_t rank, const RankTer
         return format_text("{} has {} triangles in {} meshes, and {} has {} in {}: all ranks of a "
                            "scene need the same meshes",
                            one, other.triangles, other.meshes, zero, first.triangles, first.meshes);
+    if (other.soup != first.soup)
+        return format_text("{} has other positions, transforms or masks than {}: all ranks of a "
+                           "scene need the same meshes",
+                           one, zero);
     return format_text("{} has a config other than that of {}: ranks_own, precision, leaves and "
                        "leaf_triangles must be the same on all ranks of a scene",
                        one, zero);

@@ -14,7 +14,7 @@ namespace ovc {
 struct RankTerms {
     /// Is the same on all of them.
     struct Alike {
-        uint64_t meshes = 0, triangles = 0;
+        uint64_t meshes = 0, triangles = 0, soup = 0; // soup: a checksum of them
         uint64_t ranks_own = 0, precision = 0, leaf_triangles = 0, leaves = 0; // of the config
         bool operator==(const Alike&) const = default;
     };

@@ -52,6 +52,10 @@ TEST(Agreement, TellsAllRanksWhoHasBroughtSomethingElse) {
         ASSERT_FALSE(meshes);
         EXPECT_EQ(meshes.error().kind, ErrorKind::InvalidArgument);
         EXPECT_THAT(meshes.error().message, HasSubstr("rank 2 on here has 7 triangles"));
+        mine.alike = {.soup = rank};
+        const auto soup = agreed_terms(notes, transport, mine);
+        ASSERT_FALSE(soup);
+        EXPECT_THAT(soup.error().message, HasSubstr("rank 1 on here has other positions"));
         mine.alike = {.ranks_own = rank == 1};
         const auto config = agreed_terms(notes, transport, mine);
         ASSERT_FALSE(config);

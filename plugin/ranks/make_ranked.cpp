@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The structure of libovercast-mpi.so: two-level, whose pages are shared out between ranks where
 // they do not fit, or where the config says so.
+#include "core/file/checksum.h"
 #include "core/system/caught_error.h"
 #include "core/text/format_text.h"
+#include "plugin/leaf_store/corner_sums.h"
 #include "plugin/ranks/agreement.h"
 #include "plugin/ranks/ranked_scene.h"
 #include "plugin/ranks/sharing.h"
@@ -11,6 +13,8 @@
 #include "plugin/structure/failure.h"
 #include "plugin/two_level/make_two_level.h"
 #include "plugin/two_level/two_level.h"
+
+#include <algorithm>
 
 namespace ovc {
 
@@ -31,11 +35,23 @@ Result<std::unique_ptr<TwoLevel>> built_here(const Soup& soup, const BuildReques
     }
 }
 
+/// Returns a checksum of the meshes, besides corners that lie on a disk: those are checked by what
+/// was saved of them.
+uint64_t checksum_of_meshes(const Soup& soup) {
+    const bool is_stored = std::ranges::any_of(soup.chunks, &Chunk::stored_corners);
+    Checksum sum;
+    sum.add_value((is_stored ? unsummed(soup) : corner_sums_of(soup)).checksum());
+    for (const Chunk& chunk : soup.chunks)
+        sum.add_value(uint64_t(chunk.mask()));
+    return sum.value();
+}
+
 RankTerms terms_of(const Soup& soup, const DeviceInfo& device, const ovc_scene_config& config,
                    const TwoLevelOptions& options) {
     RankTerms terms;
-    terms.alike = {soup.chunks.size(), soup.triangle_count(),  config.ranks_own,
-                   config.precision,   options.leaf_triangles, options.leaves};
+    terms.alike = {soup.chunks.size(), soup.triangle_count(), checksum_of_meshes(soup),
+                   config.ranks_own,   config.precision,      options.leaf_triangles,
+                   options.leaves};
     terms.own.gpu_bytes =
         config.gpu_memory_bytes ? config.gpu_memory_bytes : device.default_budget_bytes();
     if (config.host_memory_bytes)
