@@ -347,7 +347,7 @@ typedef struct ovc_plan {
     uint64_t level2_bytes;         /* all pages together: to move every page once */
     uint64_t largest_page_bytes;   /* an upper estimate: up to three tenths above the true size */
     uint64_t gpu_budget_bytes;
-    uint64_t smallest_budget_bytes; /* works, as all larger ones do; commit names the same. With host_memory_bytes about the smallest */
+    uint64_t smallest_budget_bytes; /* works, as all larger ones do; commit names the same */
     uint64_t ray_bytes;            /* of the budget, for rays and answers */
     uint64_t level1_bytes;         /* of the budget, for the table of portals: 0 where one frame suits all pages */
     uint64_t pool_bytes;           /* of the budget, for pages: what rays and portals leave, and no more than pages take */

@@ -13,10 +13,21 @@
 
 namespace ovc {
 
+/// Returns the bytes of portals and of marks of active pages.
+static uint64_t bytes_beside_pool(const BuiltScene& scene, const TwoLevelOptions& options) {
+    return scene.top.table_bytes() +
+           (options.tell_active ? scene.pages.size() * sizeof(uint32_t) : 0);
+}
+
 uint64_t room_for_pool(const BuiltScene& scene, const TwoLevelOptions& options,
                        const MemoryPlan& plan) {
-    const uint64_t active_bytes = options.tell_active ? scene.pages.size() * sizeof(uint32_t) : 0;
-    return plan.pool_bytes - std::min(plan.pool_bytes, scene.top.table_bytes() + active_bytes);
+    return plan.pool_bytes - std::min(plan.pool_bytes, bytes_beside_pool(scene, options));
+}
+
+uint64_t smallest_budget(const BuiltScene& scene, const TwoLevelOptions& options,
+                         const DeviceInfo& device) {
+    return smallest_budget(
+        bytes_beside_pool(scene, options) + scene.top.room() + scene.largest_page_bytes(), device);
 }
 
 /// Leaves room for what updates make of the tree: meshes that are home may leave through portals.
@@ -140,9 +151,9 @@ Result<BuiltScene> built(const Soup& soup, const TwoLevelOptions& options, const
 
 } // namespace
 
-/// Returns the scene that options.store reads.
-static Result<BuiltScene> stored(const Soup& soup, const TwoLevelOptions& options,
-                                 const MemoryPlan& plan) {
+Result<BuiltScene> open_scene(const Soup& soup, const TwoLevelOptions& options,
+                              const MemoryPlan& plan, const DeviceInfo& device,
+                              const LogSink& log) {
     Result<BuiltScene> scene = open_stored_levels(*options.store, soup);
     if (!scene && scene.error().kind != ErrorKind::OverBudget)
         return Error{"what was saved " + scene.error().message, ErrorKind::Unreadable};
@@ -150,21 +161,18 @@ static Result<BuiltScene> stored(const Soup& soup, const TwoLevelOptions& option
         return scene;
     set_limits(*scene, options, plan);
     if (!finish_scene(*scene, options, plan))
-        return over_budget(format_text("the largest page that was saved takes {} bytes, for which "
-                                       "the budget of {} bytes of GPU memory has no room",
-                                       scene->largest_page_bytes(), plan.budget_bytes));
+        return over_budget(format_text(
+            "a GPU budget of {} bytes is too small for what was saved: the smallest that works is "
+            "{} bytes (its largest page takes {})",
+            plan.budget_bytes, smallest_budget(*scene, options, device),
+            scene->largest_page_bytes()));
+    warn_of_dropped(scene->dropped, log);
     return scene;
 }
 
 Result<BuiltScene> build_scene(const Soup& soup, const TwoLevelOptions& options,
                                const MemoryPlan& plan, const LogSink& log,
                                BuildProgress* progress) {
-    if (options.store) {
-        Result<BuiltScene> scene = stored(soup, options, plan);
-        if (scene)
-            warn_of_dropped(scene->dropped, log);
-        return scene;
-    }
     std::optional<BuiltScene> found = restored(soup, options, plan, log);
     Result<BuiltScene> scene =
         found ? Result<BuiltScene>(std::move(*found)) : built(soup, options, plan, progress);

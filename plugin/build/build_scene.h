@@ -16,6 +16,17 @@ Result<BuiltScene> build_scene(const Soup& soup, const TwoLevelOptions& options,
                                const MemoryPlan& plan, const LogSink& log,
                                BuildProgress* progress = nullptr);
 
+/// Returns the scene that options.store reads. Error of the kind OverBudget: the plan's pool has no
+/// room for the tree and the largest page of what was saved, or the store's budget is too small;
+/// the sentence names the smallest that works.
+Result<BuiltScene> open_scene(const Soup& soup, const TwoLevelOptions& options,
+                              const MemoryPlan& plan, const DeviceInfo& device, const LogSink& log);
+
+/// Returns the smallest budget with which a scene can be traced whose tree is built over the roots
+/// of its pages, as that of a scene on a disk is.
+uint64_t smallest_budget(const BuiltScene& scene, const TwoLevelOptions& options,
+                         const DeviceInfo& device);
+
 /// Returns the bytes of the plan's pool that portals and marks of active pages leave to the
 /// top-level tree and pages.
 uint64_t room_for_pool(const BuiltScene& scene, const TwoLevelOptions& options,

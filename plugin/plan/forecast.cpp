@@ -158,14 +158,9 @@ Result<ovc_plan> plan_of_saved(const Soup& soup, const TwoLevelOptions& options,
         all.portals += more.parts * mesh.places.size();
         all.cuts.add(more);
     }
-    const uint64_t leaves = all.cuts.pages.size();
-    const uint64_t needed = (1 + all.portals) * kPortalBytes + max_top_level_bytes(1) +
-                            leaves * kMaxBytesPerPart + all.cuts.largest_page;
     plan.fits = add_tree(*scene, options, memory);
-    plan.smallest_budget_bytes = smallest_budget(needed, device); // about
-    if (plan.fits)
-        plan.smallest_budget_bytes = std::min(plan.smallest_budget_bytes, memory.budget_bytes);
-    if (leaves > 0)
+    plan.smallest_budget_bytes = smallest_budget(*scene, options, device);
+    if (!all.cuts.pages.empty())
         fill_in(plan, all, memory);
     plan.saved_bytes = store.saved_bytes();
     plan.host_bytes = store.max_bytes();

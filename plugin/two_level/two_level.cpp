@@ -22,9 +22,11 @@ Result<std::unique_ptr<TwoLevel>> TwoLevel::build(const Soup& soup, GlThread& gl
     const Result<MemoryPlan> plan = plan_memory(soup, options, gl.info());
     if (!plan)
         return plan.error();
-    if (const Result<Done> enough = check_budget(soup, options, *plan, gl.info()); !enough)
-        return enough.error();
-    Result<BuiltScene> scene = build_scene(soup, options, *plan, log, progress);
+    if (!options.store)
+        if (const Result<Done> enough = check_budget(soup, options, *plan, gl.info()); !enough)
+            return enough.error();
+    Result<BuiltScene> scene = options.store ? open_scene(soup, options, *plan, gl.info(), log)
+                                             : build_scene(soup, options, *plan, log, progress);
     if (!scene)
         return scene.error();
     std::unique_ptr<TwoLevel> self(new TwoLevel(std::move(*scene), gl, options, *plan, log));

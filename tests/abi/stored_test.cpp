@@ -265,6 +265,49 @@ TEST_F(Stored, AnswersAreTheSameBitsUnderAnyBudgets) {
     }
 }
 
+/// What was saved is cut already, so other budgets work than where a scene is built.
+TEST_F(Stored, ThePlanNamesTheSmallestBudgetsThatWork) {
+    Soup instances = test::closed_grid(20);
+    for (int i = 1; i < 3000; ++i) {
+        Transform moved = kIdentity;
+        moved.rows[0][3] = i % 60 * 3;
+        moved.rows[1][3] = i / 60 * 3;
+        instances.chunks.push_back(instances.chunks[0].instance());
+        instances.chunks.back().place(moved);
+    }
+    Soup meshes;
+    for (int i = 0; i < 500; ++i)
+        for (Chunk& chunk : test::closed_grid(3, dvec3(i % 30 * 2, i / 30 * 2, 0)).chunks)
+            meshes.chunks.push_back(std::move(chunk));
+    std::vector<Soup> soups;
+    soups.push_back(std::move(instances));
+    soups.push_back(std::move(meshes));
+    soups.push_back(test::closed_grid(50));
+    soups.push_back(test::random_soup(6, 5000, 0.5));
+    for (const Soup& soup : soups) {
+        SCOPED_TRACE(soup.triangle_count());
+        const bool placed = soup.chunks.back().transform();
+        const test::AbiScene built = in_memory(soup, 700, OVC_PRECISION_CERTIFIED);
+        Disk disk(soup, saved(built));
+        const auto scene_of = [&](uint64_t host, uint64_t gpu) {
+            const ovc_scene_config config = disk.config(host, gpu);
+            return placed ? disk.scene_of_instances(device, config) : disk.scene(device, config);
+        };
+        auto plan = test::sized<ovc_plan>();
+        ASSERT_EQ(api().plan(scene_of(1 << 30, 0).get(), &plan), OVC_OK) << error();
+        const uint64_t host = plan.smallest_host_bytes, gpu = plan.smallest_budget_bytes;
+        EXPECT_GE(host, soup.chunks.size() * (placed ? 1000 : 500)) << "meshes take memory too";
+        const test::AbiScene scene = scene_of(host, gpu);
+        ASSERT_EQ(api().commit(scene.get()), OVC_OK) << error();
+        const auto rays = test::unpleasant_rays(soup, 7, 60);
+        ask(scene, rays).expect_same(ask(built, rays));
+        EXPECT_LE(test::statistics(scene).gpu_peak_bytes, gpu);
+        EXPECT_EQ(api().commit(scene_of(host - 1, gpu).get()), OVC_ERROR_OUT_OF_BUDGET);
+        EXPECT_EQ(api().commit(scene_of(host, gpu - 1).get()), OVC_ERROR_OUT_OF_BUDGET);
+        EXPECT_THAT(error(), HasSubstr(" smallest that works is " + std::to_string(gpu) + " "));
+    }
+}
+
 TEST_F(Stored, ASmallBudgetReadsPagesAgainAndALargeOneDoesNot) {
     const Soup soup = test::closed_grid(300);
     const auto rays = test::unpleasant_rays(soup, 5, 4000);
