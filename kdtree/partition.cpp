@@ -401,13 +401,19 @@ Level1 fill_cells(const Soup& soup, std::span<const TriangleId> triangles, const
 }
 
 Level1 cut_cell(const Soup& soup, std::span<const TriangleId> triangles, const Box& bounds,
-                const Box& box, uint32_t max_leaf_triangles, bool by_all) {
+                const Box& box, uint32_t max_leaf_triangles, CellCut how) {
     Partitioner partitioner(soup, bounds, nullptr);
-    if (by_all && triangles.size() > max_leaf_triangles)
+    const Box padded = box.padded(padding_of(bounds));
+    if (how == CellCut::ByCount) {
+        std::vector<TriangleId> all(triangles.begin(), triangles.end());
+        std::vector<std::vector<TriangleId>> lists;
+        halve(soup, all, max_leaf_triangles, lists);
+        partitioner.add_leaves(padded, std::move(lists));
+    } else if (how == CellCut::ByAll && triangles.size() > max_leaf_triangles) {
         partitioner.cut_by_all(triangles, box, max_leaf_triangles);
-    else
-        partitioner.add_leaves(box.padded(padding_of(bounds)),
-                               in_parts(triangles, max_leaf_triangles));
+    } else {
+        partitioner.add_leaves(padded, in_parts(triangles, max_leaf_triangles));
+    }
     return partitioner.finish();
 }
 

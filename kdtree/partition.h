@@ -136,11 +136,17 @@ Level1 partition_by_count(const Soup& soup, std::vector<TriangleId> triangles, c
 Level1 fill_cells(const Soup& soup, std::span<const TriangleId> triangles, const Box& bounds,
                   std::span<const KdNode> nodes, uint32_t max_leaf_triangles);
 
+/// How a cell is cut that holds more triangles than a leaf may have.
+enum class CellCut {
+    ByAll,   // by planes, as partition() does
+    ByCount, // into leaves in one cell, by medians of centres, as partition_by_count() does
+    InOrder, // likewise, in the order of triangles
+};
+
 /// Returns the tree over one cell, `box`, of the level 1 of a scene in `bounds`, with the leaves of
-/// `triangles`, which are sorted and touch the cell. Where they are more than max_leaf_triangles
-/// they are cut by all of them, as partition() does; or lie in several leaves unless by_all.
+/// `triangles`, which are sorted and touch the cell.
 Level1 cut_cell(const Soup& soup, std::span<const TriangleId> triangles, const Box& bounds,
-                const Box& box, uint32_t max_leaf_triangles, bool by_all);
+                const Box& box, uint32_t max_leaf_triangles, CellCut how);
 
 /// Returns the leaf around a point of the triangle, preferring one that lists it, because leaves at
 /// a cell's border differ by rounding. kNone: the point lies in an empty cell. Level 1 must have

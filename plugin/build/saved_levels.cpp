@@ -48,7 +48,7 @@ SavedCut saved_cut(const LevelsCut& of) {
     }
     cut.not_finite = of.dropped.not_finite;
     cut.degenerate = of.dropped.degenerate;
-    cut.duplicates = of.duplicates.size();
+    cut.duplicates = of.duplicates.size() + of.more_duplicates;
     cut.nodes = of.level1.nodes.size();
     cut.leaves = of.leaves;
     cut.triangles = of.triangles;
@@ -115,8 +115,14 @@ bool LevelsWriter::finish(const LevelsKey& key, std::span<const LevelsCut> cuts)
     writer_.part<SavedKey>("key", std::span(&saved_key, 1));
     writer_.part<SavedCut>("cuts", saved_cuts);
     writer_.begin("twins");
-    for (const LevelsCut& cut : cuts)
-        writer_.write(bytes_of(cut.duplicates));
+    const auto write = [&](std::span<const Duplicates::Pair> pairs) {
+        writer_.write(bytes_of(pairs));
+    };
+    for (const LevelsCut& cut : cuts) {
+        write(cut.duplicates);
+        if (cut.each_more)
+            cut.each_more(write);
+    }
     writer_.begin("nodes");
     for (const LevelsCut& cut : cuts)
         writer_.write(bytes_of(std::span<const KdNode>(cut.level1.nodes)));

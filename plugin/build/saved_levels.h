@@ -4,10 +4,12 @@
 #pragma once
 
 #include "core/file/archive.h"
+#include "core/function_ref.h"
 #include "plugin/build/built_scene.h"
 #include "plugin/build/levels_format.h"
 #include "plugin/leaf_store/corner_sums.h"
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -23,6 +25,11 @@ struct LevelsCut {
     uint64_t leaves = 0;                          // of those that were added
     uint64_t triangles = 0;                       // in leaves, each counted once
     std::optional<Transform> rest_place{};        // of a mesh that came to rest: where it did
+    /// Duplicates that are not in memory, instead of the others: how many there are, and what calls
+    /// write() with all of them, sorted.
+    using WritePairs = FunctionRef<void(std::span<const Duplicates::Pair>)>;
+    uint64_t more_duplicates = 0;
+    std::function<void(const WritePairs& write)> each_more{};
 };
 
 /// Decides whether a later scene may take levels.

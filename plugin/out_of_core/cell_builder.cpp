@@ -31,19 +31,11 @@ public:
     }
 
 private:
-    Level1 cut(std::span<const TriangleId> triangles, const Box& box,
-               uint32_t max_triangles) const {
-        if (options_.in_no_cell)
-            return partition_by_count(soup_.soup(), {triangles.begin(), triangles.end()},
-                                      options_.bounds, max_triangles);
-        return cut_cell(soup_.soup(), triangles, options_.bounds, box, max_triangles,
-                        options_.by_all);
-    }
-
     /// Appends the tree over `box`, with its leaves and pages.
     Result<Done> add(std::span<const TriangleId> triangles, const Box& box,
                      uint32_t max_triangles) {
-        Level1 level = cut(triangles, box, max_triangles);
+        Level1 level =
+            cut_cell(soup_.soup(), triangles, options_.bounds, box, max_triangles, options_.cut);
         std::vector<Page> pages(level.leaves.size());
         parallel_for(pages.size(), 1, [&](size_t first, size_t last) {
             for (size_t i = first; i < last; ++i) {

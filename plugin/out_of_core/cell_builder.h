@@ -20,11 +20,10 @@ namespace ovc {
 struct CellOptions {
     Box bounds; // of the scene
     uint32_t max_triangles = 1;
-    bool by_all = false; // a cell that holds more is cut by all it holds; else into several leaves
+    CellCut cut = CellCut::InOrder;
     uint64_t max_page_bytes = 0;
     std::span<const uint32_t> first_numbers; // of each mesh, in pages
     LoosePairs loose;
-    bool in_no_cell = false; // the triangles are far-reaching ones (Level1::far_leaves)
 };
 
 struct BuiltCell {

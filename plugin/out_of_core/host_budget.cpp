@@ -15,6 +15,7 @@ constexpr uint64_t kMinBudget = 8 << 20; // blocks that are read, and what table
 /// A triangle of floats in a buffer, and what is kept of each buffer that went to the disk
 /// (DealtExtent, in a vector that doubles).
 constexpr double kBytesOfRecord = 48, kBytesOfExtent = 24;
+constexpr double kMaxBytesOfCell = double(kBytesOfCell + kBytesOfDouble);
 /// Roughly how many copies of a triangle all cells have together, and how full cells are.
 constexpr double kCopies = 1.4, kFull = 0.5;
 
@@ -30,11 +31,11 @@ uint64_t HostBudget::buffer_bytes(size_t cells) const {
 }
 
 uint64_t smallest_host_budget(uint64_t triangles, size_t threads) {
-    // Leaves have bytes / (2 kBytesOfCell threads) triangles, so their number times the bytes is
+    // Leaves have bytes / (2 kMaxBytesOfCell threads) triangles, so their number times the bytes is
     // fixed. The smallest buffers of all cells take an eighth of the bytes: an equation for their
     // square. What is kept of larger ones takes a quarter: one for their cube.
     const double copies = double(triangles) * kCopies;
-    const double cells_times_bytes = copies / kFull * 2 * double(kBytesOfCell) * double(threads);
+    const double cells_times_bytes = copies / kFull * 2 * kMaxBytesOfCell * double(threads);
     const double for_buffers = std::sqrt(8 * double(kMinBuffer) * cells_times_bytes);
     const double for_extents =
         std::cbrt(4 * kBytesOfExtent * copies * kBytesOfRecord * 8 * cells_times_bytes);

@@ -23,9 +23,10 @@ TEST(HostBudget, PartsStayBelowTheWhole) {
             }
 }
 
-TEST(HostBudget, HoldsACellInTheBudgetThatIsNamedForIt) {
-    for (const uint64_t triangles : {1ull, 1000ull, 123'456'789ull})
-        EXPECT_GE((HostBudget{host_budget_for_cell(triangles), 2}.triangles_at_once()), triangles);
+TEST(HostBudget, ACellOfDoublesHoldsFewerTriangles) {
+    const HostBudget floats{100 << 20, 3}, doubles{100 << 20, 3, /* has_doubles= */ true};
+    EXPECT_LT(doubles.leaf_triangles(), floats.leaf_triangles());
+    EXPECT_LE(doubles.triangles_at_once() * (kBytesOfCell + kBytesOfDouble), doubles.bytes / 2);
 }
 
 } // namespace

@@ -11,6 +11,7 @@
 #include "plugin/build/saved_levels.h"
 #include "plugin/out_of_core/build_steps.h"
 #include "plugin/out_of_core/cell_builder.h"
+#include "plugin/out_of_core/cell_parts.h"
 #include "plugin/out_of_core/deal_source.h"
 #include "plugin/out_of_core/dealt_cells.h"
 #include "plugin/out_of_core/source_survey.h"
@@ -40,7 +41,8 @@ public:
                     const MemoryPlan& plan, const ByteSink& sink, BuildProgress* progress)
         : source_(scene.source),
           scratch_(scene.scratch),
-          budget_(host_budget(scene.host_bytes)),
+          host_bytes_(scene.host_bytes),
+          budget_(host_budget(scene.host_bytes, source_.meshes())),
           options_(options),
           plan_(plan),
           progress_(progress),
@@ -50,9 +52,8 @@ public:
           levels_(sink, scratch_, steps_) {}
 
     Result<StreamedLevels> run() {
-        if (const uint64_t smallest = smallest_host_budget(all_, budget_.threads);
-            budget_.bytes < smallest)
-            return too_small(budget_, all_, smallest);
+        if (budget_.bytes < smallest_host_budget(all_, budget_.threads))
+            return too_small(host_bytes_, source_.meshes());
         begin(progress_, "triangles", 0.1, all_);
         set_limits(all_);
         const uint32_t rate = streamed_sample_rate(budget_, all_, max_triangles());
@@ -61,10 +62,7 @@ public:
         set_limits(hittable_);
         check_steps(surveyed.sums.checksum(), rate);
         if (hittable_ > 0) {
-            if (const Result<Done> dealt =
-                    deal(std::move(surveyed.sample), surveyed.far, rate, surveyed.found.bounds);
-                !dealt)
-                return dealt.error();
+            deal(std::move(surveyed.sample), surveyed.far, rate, surveyed.found.bounds);
             if (const Result<Done> built = build_cells(rate > 1); !built)
                 return built.error();
         }
@@ -96,8 +94,8 @@ private:
             BuildSteps::fail();
     }
 
-    /// Chooses planes by the sample, deals all triangles, and plans a leaf for each cell.
-    Result<Done> deal(LocalSoup sample, const FarSearch& far, uint32_t rate, const Box& bounds) {
+    /// Chooses planes by the sample, deals all triangles, and plans a leaf for each piece.
+    void deal(LocalSoup sample, const FarSearch& far, uint32_t rate, const Box& bounds) {
         std::vector<TriangleId> drawn = sample.triangles();
         Duplicates::take_out(sample.soup(), drawn);
         one_frame_ = one_frame_suits(sample.soup(), drawn, bounds);
@@ -122,42 +120,65 @@ private:
             deal_source(source_, finder, far_, hittable_, max_triangles(), *dealt_, progress_);
             steps_.keep(dealt_->dealt());
         }
-        uint64_t largest = 0;
-        for (size_t cell = 0; cell < cells; ++cell)
-            largest = std::max(largest, dealt_->count(cell));
-        if (largest > budget_.triangles_at_once())
-            return too_small(budget_, all_, host_budget_for_cell(largest));
+        part_large_cells();
         plan_leaves(sample.soup(), drawn, finder);
-        return Done{};
     }
 
-    /// Decides on frames, by the boxes of cells and the sample in them. planned_ has a leaf for
-    /// each cell that has triangles, that of the far-reaching ones first.
+    /// Finds the pieces that are built. A cell that holds more than is built at once, because its
+    /// triangles overlap or are duplicates of a few, is dealt again, to parts.
+    void part_large_cells() {
+        size_t parts = 0;
+        std::vector<size_t> parts_of;
+        for (size_t cell = 0; cell < dealt_->cells(); ++cell) {
+            parts_of.push_back(parts_of_cell(dealt_->count(cell), budget_.triangles_at_once()));
+            parts += parts_of.back();
+        }
+        std::vector<DealtCell> kept;
+        const bool were_kept = parts > 0 && steps_.take(kept);
+        parts_.emplace(parts, source_.meshes(), budget_.buffer_bytes(parts), scratch_);
+        if (were_kept)
+            parts_->restore(std::move(kept));
+        size_t part = 0;
+        pieces_of_.assign(dealt_->cells(), {});
+        const auto add = [&](size_t cell) {
+            LeafRange& range = pieces_of_[cell];
+            range.first = uint32_t(pieces_.size());
+            if (parts_of[cell] == 0 && dealt_->count(cell) > 0)
+                pieces_.push_back({&*dealt_, cell, cell});
+            if (parts_of[cell] > 0 && !were_kept)
+                deal_to_parts(*dealt_, cell, source_.meshes(), *parts_, part, parts_of[cell]);
+            for (size_t i = 0; i < parts_of[cell]; ++i, ++part)
+                if (parts_->count(part) > 0)
+                    pieces_.push_back({&*parts_, part, cell});
+            range.count = uint32_t(pieces_.size()) - range.first;
+        };
+        add(cells_.size());
+        for (size_t cell = 0; cell < cells_.size(); ++cell)
+            add(cell);
+        if (parts > 0 && !were_kept)
+            steps_.keep(parts_->dealt());
+    }
+
+    /// Decides on frames, by the boxes of pieces and the sample in their cells. planned_ has a leaf
+    /// for each piece.
     void plan_leaves(const Soup& sample, std::span<const TriangleId> drawn,
                      const CellFinder& finder) {
         Level1 planned{.nodes = planes_, .bounds = level1_.bounds, .padding = level1_.padding};
-        planned_of_.assign(dealt_->cells(), kNone);
-        const auto plan = [&](size_t cell, const Box& padded) {
-            if (dealt_->count(cell) == 0)
-                return;
-            planned_of_[cell] = uint32_t(planned.leaves.size());
-            planned.leaves.push_back(leaf_around(padded, level1_.padding, dealt_->bounds(cell)));
-        };
-        plan(cells_.size(), level1_.bounds.padded(level1_.padding));
-        planned.far_leaves = uint32_t(planned.leaves.size());
-        for (size_t cell = 0; cell < cells_.size(); ++cell) {
-            const auto first = uint32_t(planned.leaves.size());
-            plan(cell, cells_[cell].padded);
+        const Box all = level1_.bounds.padded(level1_.padding);
+        for (const Piece& piece : pieces_)
+            planned.leaves.push_back(leaf_around(is_far(piece) ? all : cells_[piece.cell].padded,
+                                                 level1_.padding, piece.bounds()));
+        planned.far_leaves = pieces_of_.back().count;
+        for (size_t cell = 0; cell < cells_.size(); ++cell)
             planned.nodes[cells_[cell].node] =
-                KdNode::leaf(first, uint32_t(planned.leaves.size()) - first);
-        }
+                KdNode::leaf(pieces_of_[cell].first, pieces_of_[cell].count);
         if (planned.leaves.size() == 1 || (far_.empty() && one_frame_)) {
             share_frame(planned);
         } else {
             for (const TriangleId id : drawn)
                 finder.find(sample.triangle(id), [&](uint32_t c) {
-                    if (planned_of_[c] != kNone)
-                        planned.leaves[planned_of_[c]].triangles.push_back(id);
+                    if (const LeafRange& in = pieces_of_[c]; in.count > 0) // parts share a sample
+                        planned.leaves[in.first + id.prim % in.count].triangles.push_back(id);
                 });
             share_frames(sample, planned);
         }
@@ -165,69 +186,65 @@ private:
         planned_ = std::move(planned.leaves);
     }
 
-    /// Builds all cells, as many at a time as there is room for, and writes them in order.
+    /// Builds all pieces, as many at a time as there is room for, and writes them in order.
     Result<Done> build_cells(bool by_all) {
-        std::vector<size_t> order;
         uint64_t references = 0;
-        for (size_t i = 0; i <= cells_.size(); ++i) {
-            const size_t cell = i == 0 ? cells_.size() : i - 1;
-            references += dealt_->count(cell);
-            if (dealt_->count(cell) > 0)
-                order.push_back(cell);
-        }
+        for (const Piece& piece : pieces_)
+            references += piece.count();
         begin(progress_, "level 2", 0.6, 2 * references);
         CellOptions options{.bounds = level1_.bounds,
                             .max_triangles = max_triangles(),
-                            .by_all = by_all,
+                            .cut = by_all ? CellCut::ByAll : CellCut::InOrder,
                             .max_page_bytes = limits_.limits.page_bytes_of(planned_.size()),
                             .first_numbers = first_numbers_};
-        const Result<LoosePairs> loose = choose_loose_pairs(order, options, references);
+        const Result<LoosePairs> loose = choose_loose_pairs(options, references);
         if (!loose)
             return loose.error();
         options.loose = *loose;
         size_t at = 0;
-        for (; at < order.size() && levels_.add_kept(order[at], order[at] == cells_.size()); ++at)
-            add(progress_, 2 * dealt_->count(order[at]));
-        while (at < order.size()) {
-            const size_t end = end_of_batch(order, at);
+        for (; at < pieces_.size() && levels_.add_kept(pieces_[at].cell, is_far(pieces_[at])); ++at)
+            add(progress_, 2 * pieces_[at].count());
+        while (at < pieces_.size()) {
+            const size_t end = end_of_batch(at);
             std::vector<std::optional<Result<BuiltCell>>> built(end - at);
             parallel_for(built.size(), 1, [&](size_t first, size_t last) {
                 for (size_t i = first; i < last; ++i)
-                    built[i] = build(order[at + i], options);
+                    built[i] = build(at + i, options);
             });
             for (size_t i = 0; i < built.size(); ++i, ++at) {
                 if (!*built[i])
                     return built[i]->error();
-                levels_.add(order[at], order[at] == cells_.size(), std::move(**built[i]));
+                levels_.add(pieces_[at].cell, is_far(pieces_[at]), std::move(**built[i]));
                 built[i].reset();
             }
         }
         return Done{};
     }
 
-    /// Returns the end of as many of `order` from `at` on as there is room for, at least one.
-    size_t end_of_batch(std::span<const size_t> order, size_t at) const {
-        uint64_t triangles = dealt_->count(order[at]);
-        for (++at; at < order.size(); ++at) {
-            triangles += dealt_->count(order[at]);
+    /// Returns the end of as many pieces from `at` on as there is room for, at least one.
+    size_t end_of_batch(size_t at) const {
+        uint64_t triangles = pieces_[at].count();
+        for (++at; at < pieces_.size(); ++at) {
+            triangles += pieces_[at].count();
             if (triangles > budget_.triangles_at_once())
                 break;
         }
         return at;
     }
 
-    Result<BuiltCell> build(size_t cell, CellOptions options) const {
-        options.in_no_cell = cell == cells_.size();
-        return build_cell(dealt_->read(cell),
-                          options.in_no_cell ? level1_.bounds : cells_[cell].box,
-                          planned_[planned_of_[cell]], options, progress_);
+    Result<BuiltCell> build(size_t number, CellOptions options) const {
+        const Piece& piece = pieces_[number];
+        if (is_far(piece) || piece.in == &*parts_)
+            options.cut = CellCut::ByCount;
+        return build_cell(piece.in->read(piece.index),
+                          is_far(piece) ? level1_.bounds : cells_[piece.cell].box, planned_[number],
+                          options, progress_);
     }
 
     /// Lets triangles that share no side lie in one unit where most pages do better so, as a build
     /// in memory does. A few cells tell for all.
-    Result<LoosePairs> choose_loose_pairs(std::span<const size_t> order, CellOptions options,
-                                          uint64_t references) {
-        const size_t asked = std::min<size_t>(order.size(), 4);
+    Result<LoosePairs> choose_loose_pairs(CellOptions options, uint64_t references) {
+        const size_t asked = std::min<size_t>(pieces_.size(), 4);
         if (!level1_.shares_frame)
             return LoosePairs{};
         options.loose = {true, double(references) / double(hittable_)};
@@ -236,7 +253,7 @@ private:
         uint64_t all = 0, loose = 0;
         for (size_t i = 0; i < asked; ++i) {
             const Result<BuiltCell> built =
-                build(order[order.size() * (2 * i + 1) / (2 * asked)], options);
+                build(pieces_.size() * (2 * i + 1) / (2 * asked), options);
             if (!built)
                 return built.error();
             for (size_t leaf = 0; leaf < built->leaves.size(); ++leaf) {
@@ -250,9 +267,21 @@ private:
         return options.loose;
     }
 
+    /// What is built by itself: a cell, or a part of one.
+    struct Piece {
+        const DealtCells* in;
+        size_t index; // there
+        size_t cell;
+
+        uint64_t count() const { return in->count(index); }
+        const Box& bounds() const { return in->bounds(index); }
+    };
+    bool is_far(const Piece& piece) const { return piece.cell == cells_.size(); }
+
     TriangleSource& source_;
     ScratchSpace& scratch_;
-    const HostBudget budget_;
+    const uint64_t host_bytes_;
+    const HostBudget budget_; // of host_bytes_
     const TwoLevelOptions& options_;
     const MemoryPlan& plan_;
     BuildProgress* const progress_;
@@ -265,9 +294,11 @@ private:
     Level1 level1_; // without nodes and leaves
     std::vector<KdNode> planes_;
     std::vector<Cell> cells_;
-    std::optional<DealtCells> dealt_;
-    std::vector<Leaf> planned_;
-    std::vector<uint32_t> planned_of_; // into planned_, for each cell; kNone: it is empty
+    std::optional<DealtCells> dealt_;  // the last cell is that of far-reaching triangles
+    std::optional<DealtCells> parts_;  // of cells that are not built whole
+    std::vector<Piece> pieces_;        // of far-reaching triangles first
+    std::vector<LeafRange> pieces_of_; // each cell
+    std::vector<Leaf> planned_;        // for each piece
     BuildSteps steps_;
     StreamedLevelsWriter levels_;
 };
@@ -302,7 +333,7 @@ Result<StreamedLevels> save_streamed(const StreamedScene& scene, const TwoLevelO
     const Result<MemoryPlan> plan = plan_memory(triangles, options, device);
     if (!plan)
         return plan.error();
-    if (HostBudget{scene.host_bytes, 1}.holds(triangles))
+    if (host_budget(scene.host_bytes, scene.source.meshes()).holds(triangles))
         return save_in_memory(scene.source, options, *plan, device, sink, log, progress);
     return stream_levels(scene, options, *plan, sink, progress);
 }

@@ -39,14 +39,30 @@ Soup read_soup(TriangleSource& source) {
     return soup;
 }
 
-HostBudget host_budget(uint64_t bytes) {
-    return {bytes, std::max<size_t>(thread_count(), kMinThreads)};
+/// Returns the bytes of what is kept of each mesh. Any budget has room for a few.
+static uint64_t bytes_of_tables(std::span<const SourceMesh> meshes) {
+    constexpr uint64_t kFew = 256;
+    return (std::max<uint64_t>(meshes.size(), kFew) - kFew) * kBytesOfMesh;
 }
 
-Error too_small(const HostBudget& budget, uint64_t triangles, uint64_t smallest) {
+HostBudget host_budget(uint64_t bytes, std::span<const SourceMesh> meshes) {
+    return {bytes - std::min(bytes, bytes_of_tables(meshes)),
+            std::max<size_t>(thread_count(), kMinThreads),
+            std::ranges::any_of(meshes, &SourceMesh::has_doubles)};
+}
+
+uint64_t smallest_host_bytes(std::span<const SourceMesh> meshes) {
+    const uint64_t triangles = triangles_of(meshes);
+    const size_t threads = host_budget(0, meshes).threads;
+    return bytes_of_tables(meshes) +
+           std::min(triangles * kBytesInMemory, smallest_host_budget(triangles, threads));
+}
+
+Error too_small(uint64_t bytes, std::span<const SourceMesh> meshes) {
     return over_budget(format_text("{} bytes of host memory are too few for {} triangles on {} "
                                    "threads: the smallest number that works is {}",
-                                   budget.bytes, triangles, budget.threads, smallest));
+                                   bytes, triangles_of(meshes), thread_count(),
+                                   smallest_host_bytes(meshes)));
 }
 
 StreamedLimits streamed_limits(const TwoLevelOptions& options, const MemoryPlan& plan,

@@ -23,11 +23,14 @@ uint64_t triangles_of(std::span<const SourceMesh> meshes);
 /// Reads all of the source.
 Soup read_soup(TriangleSource& source);
 
-/// Returns the budget that a build of so many bytes shares out.
-HostBudget host_budget(uint64_t bytes);
+/// Returns the budget that a build of such meshes shares out of so many bytes.
+HostBudget host_budget(uint64_t bytes, std::span<const SourceMesh> meshes);
 
-/// Returns the error of a budget that is less than `smallest`.
-Error too_small(const HostBudget& budget, uint64_t triangles, uint64_t smallest);
+/// Returns the smallest number of bytes that a build of such meshes works with.
+uint64_t smallest_host_bytes(std::span<const SourceMesh> meshes);
+
+/// Returns the error of fewer bytes.
+Error too_small(uint64_t bytes, std::span<const SourceMesh> meshes);
 
 /// The limits on leaves of a source. Pages that turn out too large are cut again.
 struct StreamedLimits {

@@ -22,14 +22,20 @@ static ByteSink throwing(const ByteSink& sink) {
 
 StreamedLevelsWriter::StreamedLevelsWriter(const ByteSink& sink, ScratchSpace& scratch,
                                            BuildSteps& steps)
-    : writer_(throwing(sink)), scratch_(scratch), steps_(steps) {}
+    : writer_(throwing(sink)), scratch_(scratch), steps_(steps), duplicates_(scratch) {}
 
 void StreamedLevelsWriter::add_tree(size_t cell, bool is_far, std::vector<KdNode> nodes,
                                     size_t leaves) {
     const auto first = uint32_t(writer_.leaves());
     if (is_far) {
-        assert(first == 0);
-        far_leaves_ = uint32_t(leaves);
+        assert(first == far_leaves_);
+        far_leaves_ += uint32_t(leaves);
+        return;
+    }
+    if (!trees_.empty() && trees_.back().cell == cell) {
+        KdNode& node = trees_.back().nodes.front();
+        node = KdNode::leaf(node.first(), node.count() + uint32_t(leaves));
+        trees_.back().end += uint32_t(leaves);
         return;
     }
     for (KdNode& node : nodes)
@@ -53,16 +59,17 @@ void StreamedLevelsWriter::add(size_t cell, bool is_far, BuiltCell built) {
                         lists_.back()});
         writer_.add(kept.back().leaf, kept.back().page, built.pages[i].view());
     }
-    duplicates_.insert(duplicates_.end(), built.duplicates.begin(), built.duplicates.end());
-    steps_.keep(uint64_t(cell), built.nodes, kept, built.duplicates);
+    const DuplicateRuns::Run run = duplicates_.put(built.duplicates);
+    duplicates_.add(run);
+    steps_.keep(uint64_t(cell), built.nodes, kept, run.offset, run.pairs, run.checksum);
 }
 
 bool StreamedLevelsWriter::add_kept(size_t cell, bool is_far) {
     uint64_t kept_cell = 0;
     std::vector<KdNode> nodes;
     std::vector<KeptLeaf> leaves;
-    std::vector<Duplicates::Pair> duplicates;
-    if (!steps_.take(kept_cell, nodes, leaves, duplicates))
+    DuplicateRuns::Run run;
+    if (!steps_.take(kept_cell, nodes, leaves, run.offset, run.pairs, run.checksum))
         return false;
     if (kept_cell != cell)
         BuildSteps::fail();
@@ -75,7 +82,7 @@ bool StreamedLevelsWriter::add_kept(size_t cell, bool is_far) {
         lists_.push_back(leaf.list);
         writer_.add(leaf.leaf, leaf.page, texels);
     }
-    duplicates_.insert(duplicates_.end(), duplicates.begin(), duplicates.end());
+    duplicates_.add(run);
     return true;
 }
 
@@ -130,13 +137,12 @@ Result<StreamedLevels> StreamedLevelsWriter::finish(const LevelsKey& key, const 
     if (leaves > 0)
         level1.nodes = joined_nodes(planes);
     level1.far_leaves = far_leaves_;
-    // Duplicates that touch several cells were found in each of them.
-    std::ranges::sort(duplicates_);
-    const auto rest = std::ranges::unique(duplicates_);
-    duplicates_.erase(rest.begin(), rest.end());
+    LevelsCut cut{dropped, {}, level1, leaves};
+    duplicates_.for_each(
+        [&](std::span<const Duplicates::Pair> pairs) { cut.more_duplicates += pairs.size(); });
+    cut.each_more = [&](const LevelsCut::WritePairs& write) { duplicates_.for_each(write); };
     write_lists();
-    const uint64_t triangles = hittable - duplicates_.size();
-    const LevelsCut cut{dropped, duplicates_, level1, leaves, triangles};
+    const uint64_t triangles = cut.triangles = hittable - cut.more_duplicates;
     writer_.finish(key, std::span(&cut, 1));
     return StreamedLevels{leaves, triangles, true};
 }

@@ -6,6 +6,7 @@
 #include "plugin/build/saved_levels.h"
 #include "plugin/out_of_core/build_steps.h"
 #include "plugin/out_of_core/cell_builder.h"
+#include "plugin/out_of_core/duplicate_runs.h"
 #include "plugin/structure/triangle_source.h"
 
 #include <cstdint>
@@ -26,8 +27,9 @@ public:
     /// All outlive the writer, which throws Cancelled where the sink wants no more.
     StreamedLevelsWriter(const ByteSink& sink, ScratchSpace& scratch, BuildSteps& steps);
 
-    /// Writes the next cell, by its number among the cells of `planes` in finish(). The cell
-    /// of far-reaching triangles comes first, if it is there.
+    /// Writes the next cell, by its number among the cells of `planes` in finish(), or the next
+    /// part of one, which has one leaf node. The cell of far-reaching triangles comes first, if it
+    /// is there.
     void add(size_t cell, bool is_far, BuiltCell built);
     /// Writes the next cell as an earlier build did, if that came so far. Returns whether it did.
     bool add_kept(size_t cell, bool is_far);
@@ -69,7 +71,7 @@ private:
     uint32_t far_leaves_ = 0;
     std::vector<List> lists_;
     std::vector<CellTree> trees_; // in the order of cells
-    std::vector<Duplicates::Pair> duplicates_;
+    DuplicateRuns duplicates_;
 };
 
 } // namespace ovc

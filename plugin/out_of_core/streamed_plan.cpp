@@ -28,7 +28,7 @@ namespace ovc {
 namespace {
 
 /// Very many triangles touch a cube where they are far larger than the gaps between them. So many
-/// times the triangles that it was made for are enough to tell what they take.
+/// times the triangles that a small one was made for are enough to tell what they take.
 constexpr size_t kOverfull = 2;
 
 /// The result of the second look at the source.
@@ -79,11 +79,11 @@ private:
     /// Returns whether a cube has room for the triangle, and counts it.
     bool takes(const InCubes& found) {
         bool is_taken = false;
-        const auto enter = [&](uint64_t touched, auto& counts, size_t made_for) {
+        const auto enter = [&](uint64_t touched, auto& counts, size_t max) {
             for (; touched; touched &= touched - 1)
-                is_taken |= counts[size_t(std::countr_zero(touched))]++ < kOverfull * made_for;
+                is_taken |= counts[size_t(std::countr_zero(touched))]++ < max;
         };
-        enter(found.small, in_small_, made_for_);
+        enter(found.small, in_small_, kOverfull * made_for_);
         enter(found.large, in_large_, kInALargeCube);
         return is_taken;
     }
@@ -133,16 +133,16 @@ public:
     StreamedPlanner(TriangleSource& source, uint64_t host_bytes, const TwoLevelOptions& options,
                     const MemoryPlan& memory, BuildProgress* progress)
         : source_(source),
-          budget_(host_budget(host_bytes)),
+          host_bytes_(host_bytes),
+          budget_(host_budget(host_bytes, source.meshes())),
           options_(options),
           memory_(memory),
           progress_(progress),
           all_(triangles_of(source.meshes())) {}
 
     Result<ovc_plan> run(const DeviceInfo& device) {
-        const uint64_t smallest = smallest_host_budget(all_, budget_.threads);
-        if (budget_.bytes < smallest)
-            return too_small(budget_, all_, smallest);
+        if (budget_.bytes < smallest_host_budget(all_, budget_.threads))
+            return too_small(host_bytes_, source_.meshes());
         begin(progress_, "planning", 1, 2 * all_);
         const uint32_t rate = streamed_sample_rate(
             budget_, all_, streamed_limits(options_, memory_, budget_, all_).max_triangles);
@@ -153,11 +153,9 @@ public:
         plan.gpu_budget_bytes = memory_.budget_bytes;
         plan.ray_bytes = memory_.ray_bytes();
         plan.batch_rays = memory_.batch_rays;
-        plan.smallest_host_bytes = smallest;
         AllSizes sizes{.corner_blocks = surveyed.sums.sums.size()};
         if (plan.hittable > 0)
-            if (const Result<Done> done = estimate(surveyed, rate, sizes); !done)
-                return done.error();
+            estimate(surveyed, rate, sizes);
         const uint64_t needed = (1 + sizes.portals) * kPortalBytes + max_top_level_bytes(1) +
                                 sizes.cuts.pages.size() * kMaxBytesPerPart +
                                 sizes.cuts.largest_page;
@@ -171,7 +169,7 @@ public:
     }
 
 private:
-    Result<Done> estimate(const SourceSurvey& surveyed, uint32_t rate, AllSizes& sizes) {
+    void estimate(const SourceSurvey& surveyed, uint32_t rate, AllSizes& sizes) {
         const uint64_t hittable = surveyed.hittable();
         const Box& bounds = surveyed.found.bounds;
         const StreamedLimits limits = streamed_limits(options_, memory_, budget_, hittable);
@@ -186,13 +184,13 @@ private:
         const std::vector<Cell> cells = cells_of(planes, bounds, padding);
         const CellFinder finder(planes, cells, padding);
         // Where all triangles are duplicates of a few, perhaps none was drawn.
-        const Cubes cubes = drawn.empty() ? Cubes() : choose_cubes(sample, drawn, rate, hittable);
+        Cubes cubes = drawn.empty() ? Cubes() : choose_cubes(sample, drawn, rate, hittable);
+        if (!cubes.large.empty()) // their pages are built at once
+            cubes.large.resize(std::clamp<size_t>(budget_.triangles_at_once() / kInALargeCube, 1,
+                                                  cubes.large.size()));
         Counted counted(cells.size(), source_.meshes());
         SourceCounter(finder, cubes, counted).count(source_, progress_);
         std::vector<uint64_t> counts = counts_of(counted, hittable, limits.max_triangles);
-        if (const uint64_t largest = std::ranges::max(counts);
-            largest > budget_.triangles_at_once())
-            return too_small(budget_, all_, host_budget_for_cell(largest));
         // Duplicates are dealt to cells, but only one of them is in a leaf.
         if (!drawn.empty())
             for (uint64_t& count : counts)
@@ -207,11 +205,11 @@ private:
                                      rates, limits.limits);
         sizes.portals = sizes.cuts.parts;
         sizes.duplicates = duplicates;
-        return Done{};
     }
 
     TriangleSource& source_;
-    const HostBudget budget_;
+    const uint64_t host_bytes_;
+    const HostBudget budget_; // of host_bytes_
     const TwoLevelOptions& options_;
     const MemoryPlan& memory_;
     BuildProgress* const progress_;
@@ -235,16 +233,13 @@ Result<ovc_plan> plan_streamed(TriangleSource& source, uint64_t host_bytes,
     const Result<MemoryPlan> memory = plan_memory(triangles, options, device);
     if (!memory)
         return memory.error();
-    const HostBudget budget = host_budget(host_bytes);
     Result<ovc_plan> plan =
-        budget.holds(triangles)
+        host_budget(host_bytes, source.meshes()).holds(triangles)
             ? forecast(read_soup(source), options, device, progress)
             : StreamedPlanner(source, host_bytes, options, *memory, progress).run(device);
     if (!plan)
         return plan;
-    if (budget.holds(triangles))
-        plan->smallest_host_bytes =
-            std::min(smallest_host_budget(triangles, budget.threads), triangles * kBytesInMemory);
+    plan->smallest_host_bytes = smallest_host_bytes(source.meshes());
     plan->host_bytes = host_bytes_of(*plan, source.meshes(), host_bytes);
     return plan;
 }

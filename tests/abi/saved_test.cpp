@@ -332,6 +332,52 @@ TEST_F(Saved, AStreamedSceneIsPlanned) {
     }
 }
 
+/// Whatever triangles lie where: what a call names, a plan says, and one byte less is refused.
+TEST_F(Saved, TheSmallestHostMemoryWorksWithAnyStreamedScene) {
+    const auto soup_of = [&](size_t kind) {
+        const size_t count = kind == 0 ? 1'000 : 20'000; // a small one is built in memory
+        const Soup few = test::random_soup(3, 7, 1.0);
+        const auto copy = [&] {
+            const auto corners = few.chunks[0].corners();
+            return Chunk::owning(dvec3(0), {corners.begin(), corners.end()});
+        };
+        Soup soup = kind == 1 ? test::random_soup(4, count, 3.0) : test::closed_grid(12);
+        for (size_t at = soup.triangle_count(); at < count && kind != 3; at = soup.triangle_count())
+            soup.chunks.push_back(copy());
+        for (int m = 0; m < 9'000 && kind == 3; ++m) // many meshes
+            soup.chunks.push_back(copy());
+        return soup;
+    };
+    for (size_t kind = 0; kind < 4; ++kind) {
+        SCOPED_TRACE(kind);
+        const Soup soup = soup_of(kind);
+        const auto refused = [&](uint64_t host_bytes) {
+            StreamedSoup streamed(soup);
+            const ovc_streamed_scene scene = streamed.scene(host_bytes);
+            EXPECT_EQ(api().save_streamed(device.get(), nullptr, &scene), OVC_ERROR_OUT_OF_BUDGET);
+            const std::string sentence = api().last_error(device.get());
+            return std::stoull(sentence.substr(sentence.rfind(' ') + 1));
+        };
+        const uint64_t smallest = refused(1);
+        EXPECT_EQ(refused(smallest - 1), smallest);
+        StreamedSoup streamed(soup);
+        ovc_streamed_scene scene = streamed.scene(smallest);
+        ASSERT_EQ(api().save_streamed(device.get(), nullptr, &scene), OVC_OK)
+            << api().last_error(device.get());
+        const auto rays = test::unpleasant_rays(soup, 5, 300);
+        const auto expected = answers(committed(soup, {}, test::sized<ovc_scene_config>()), rays);
+        const auto found =
+            answers(committed(soup, streamed.saved.bytes(), test::sized<ovc_scene_config>()), rays);
+        EXPECT_EQ(std::memcmp(expected.data(), found.data(), rays.size() * sizeof(ovc_hit)), 0);
+        for (const uint64_t host_bytes : {smallest, 3 * smallest, uint64_t(0)}) {
+            scene.host_memory_bytes = host_bytes;
+            auto plan = test::sized<ovc_plan>();
+            EXPECT_EQ(api().plan_streamed(device.get(), nullptr, &scene, &plan), OVC_OK);
+            EXPECT_EQ(plan.smallest_host_bytes, smallest);
+        }
+    }
+}
+
 TEST_F(Saved, AStreamedSceneTellsWhyItCannotBeSaved) {
     const Soup soup = test::closed_grid(160);
     StreamedSoup streamed(soup);
