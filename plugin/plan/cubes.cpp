@@ -9,6 +9,7 @@
 #include <array>
 #include <bit>
 #include <cassert>
+#include <cmath>
 
 namespace ovc {
 namespace {
@@ -19,19 +20,22 @@ constexpr uint64_t kMinTriangles = 4096;
 constexpr uint64_t kMaxTriangles = 32768;
 constexpr int kSide = 32; // cells of a grid along each axis
 
-/// Returns the cube around `center`, one of the centres, that holds `count` of them.
-Box cube_around(const dvec3& center, std::span<const dvec3> centers, size_t count,
+/// Returns the cube around `center`, one of the centres, that holds `count` of them, on average.
+Box cube_around(const dvec3& center, std::span<const dvec3> centers, double count,
                 std::vector<double>& distances) {
+    // A few tell how large it is; where it is to hold fewer, it is smaller, as on a surface.
+    constexpr double kFew = 4;
     distances.resize(centers.size());
     std::transform(centers.begin(), centers.end(), distances.begin(),
                    [&](const dvec3& other) { return max_component(glm::abs(other - center)); });
     const auto nth =
-        distances.begin() + ptrdiff_t(std::min(std::max<size_t>(count, 1), centers.size()) - 1);
+        distances.begin() + ptrdiff_t(std::min(size_t(std::max(count, kFew)), centers.size()) - 1);
     std::nth_element(distances.begin(), nth, distances.end());
-    return {center - dvec3(*nth), center + dvec3(*nth)};
+    const dvec3 half(*nth * std::sqrt(std::min(count / kFew, 1.0)));
+    return {center - half, center + half};
 }
 
-std::vector<Box> cubes_around(std::span<const dvec3> centers, size_t cubes, size_t count) {
+std::vector<Box> cubes_around(std::span<const dvec3> centers, size_t cubes, double count) {
     std::vector<Box> chosen(cubes);
     parallel_for(cubes, 1, [&](size_t first, size_t last) {
         std::vector<double> distances;
@@ -59,8 +63,8 @@ Cubes choose_cubes(const Soup& soup, std::span<const TriangleId> sample, uint32_
     const uint64_t in_all = std::clamp<uint64_t>(triangles / 64, kMinTriangles, kMaxTriangles);
     const size_t cubes = std::clamp<size_t>(in_all / kInASmallCube, 8, kMaxCubes);
     const size_t in_small = in_all / cubes;
-    return {cubes_around(centers, cubes, in_small / rate), in_small,
-            cubes_around(centers, kLargeCubes, kInALargeCube / rate)};
+    return {cubes_around(centers, cubes, double(in_small) / rate), in_small,
+            cubes_around(centers, kLargeCubes, double(kInALargeCube) / rate)};
 }
 
 CubeGrid::CubeGrid(std::span<const Box> cubes)

@@ -10,6 +10,8 @@
 
 #include <gtest/gtest.h>
 
+#include <bit>
+
 namespace ovc {
 namespace {
 
@@ -43,6 +45,20 @@ TEST(PageRates, AreThoseOfTheWholePage) {
             EXPECT_NEAR(rates.mean() * rates.with_cuts(40000, 1) / whole, 1, 0.08)
                 << name << " by one in " << rate;
         }
+    }
+}
+
+TEST(PageRates, CubesHoldWhatTheyAreMadeForHoweverFewAreDrawn) {
+    const Soup soup = test::random_soup(3, 200'000, 0.005);
+    const auto ids = hittable_triangles(soup, nullptr, nullptr);
+    for (const uint32_t rate : {4u, 64u, 512u}) {
+        const Cubes cubes = choose_cubes(soup, sample_triangles(soup, ids, rate), rate, ids.size());
+        const CubeGrid grid(cubes.small);
+        size_t inside = 0;
+        for (const TriangleId id : ids)
+            inside += size_t(std::popcount(grid.touched(soup.triangle(id))));
+        EXPECT_GT(inside, cubes.small.size() * cubes.in_small / 4) << rate;
+        EXPECT_LT(inside, cubes.small.size() * cubes.in_small * 4) << rate;
     }
 }
 
