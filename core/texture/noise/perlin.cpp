@@ -33,11 +33,13 @@ uint32_t permuted(int64_t number) {
 }
 
 /// Returns the product of the offset and the gradient of the number: one of the twelve directions
-/// to the middles of a cube's edges, four of which have two numbers.
+/// to the middles of a cube's edges, four of which have two numbers. The last four numbers are
+/// shared out as in pbrt, where 13 and 14 are not those of Perlin's program.
 double along_gradient(uint32_t number, const dvec3& off) {
     const uint32_t h = number & 15;
-    const double u = h < 8 ? off.x : off.y;
-    const double v = h < 4 ? off.y : h == 12 || h == 14 ? off.x : off.z;
+    const bool is_level = h == 12 || h == 13;
+    const double u = h < 8 || is_level ? off.x : off.y;
+    const double v = h < 4 || is_level ? off.y : off.z;
     return (h & 1 ? -u : u) + (h & 2 ? -v : v);
 }
 

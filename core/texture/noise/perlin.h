@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Perlin's improved noise, and sums of it that leave out what a ray's footprint is too wide for.
-// Based on: Perlin 2002, "Improving Noise".
+// Perlin's improved noise as pbrt has it, and sums of it that leave out what a ray's footprint is
+// too wide for.
+// Based on: Perlin 2002, "Improving Noise"; the values of pbrt-v4.
 #pragma once
 
 #include "core/vec.h"

@@ -9,8 +9,12 @@
 
 namespace ovc {
 
-/// The value at (3.14, 42, 7) is that which Perlin's published program prints.
+/// The value at (3.14, 42, 7) is that which Perlin's published program prints. The others are those
+/// of pbrt-v4, some of whose gradients have other numbers.
 TEST(Perlin, HasTheValuesOfImprovedNoise) {
+    EXPECT_NEAR(improved_noise({10.5, 2.25, 0.75}), 0.4492054, 1e-7);
+    EXPECT_NEAR(improved_noise({20.5, 13.25, 5.75}), -0.0245395, 1e-7);
+    EXPECT_NEAR(improved_noise({-4.25, 0.5, 9.5}), -0.1098633, 1e-7);
     EXPECT_NEAR(improved_noise({3.14, 42, 7}), 0.136919958784, 1e-12);
     EXPECT_EQ(improved_noise({-3, 5, 1000}), 0);
     EXPECT_NEAR(improved_noise({3.14 - 256, 42, 7 + 512}), 0.136919958784, 1e-9) << "a period";
