@@ -257,6 +257,8 @@ struct Light {
     /// All light goes along `direction`, from the plane through `position` that is perpendicular to
     /// it. Surfaces behind that plane are lit too, as in POV-Ray.
     bool parallel = false;
+    /// Parallel light comes from beyond all surfaces, and `position` does not count.
+    bool distant = false;
     bool shadowless = false;   // shines through everything, and makes no highlights
     bool lights_media = true;  // media scatter it
     bool fades_in_air = false; // fog and media of the air take their share of it

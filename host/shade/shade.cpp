@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <limits>
 #include <numbers>
 
 namespace ovc {
@@ -207,6 +208,8 @@ vec3 ambient_light(const Background& background, const vec3& up, const SurfacePo
 }
 
 dvec3 towards_light(const Light& light, const dvec3& position) {
+    if (light.distant)
+        return -light.direction;
     const dvec3 there = light.position - position;
     return light.parallel ? std::abs(glm::dot(there, light.direction)) * -light.direction : there;
 }
@@ -234,6 +237,8 @@ static dvec3 shadow_offset_of(const Light& light, const dvec3& there) {
 /// before at the surface that the light is projected through; 0 where it misses that.
 static double end_of_shadow_ray(const Light& light, const dvec3& from, const dvec3& way) {
     constexpr double kMinDistance = 1e-6; // for a place on the surface itself
+    if (light.distant)
+        return std::numeric_limits<double>::infinity();
     if (light.clearance == 0 && !light.projector)
         return glm::dot(way, way) > 0 ? 1 : 0;
     const double length = glm::length(way);

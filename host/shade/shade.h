@@ -72,7 +72,7 @@ vec3 background_color(const Scene& scene, const vec3& up, const dvec3& dir);
 /// ground, without shadows.
 vec3 ambient_light(const Background& background, const vec3& up, const SurfacePoint& surface);
 
-/// Returns the vector from the position to the light, at its full length.
+/// Returns the vector from the position to the light, at its full length; of 1 to a distant one.
 dvec3 towards_light(const Light& light, const dvec3& position);
 
 /// The light that a lamp brings to a place if nothing is in between, without the picture that it
@@ -87,7 +87,8 @@ FromLight light_at(const Light& light, const dvec3& position);
 /// light is behind it.
 vec3 direct_light(const Light& light, const SurfacePoint& surface);
 
-/// Returns the ray from `position` to the light, which is at t = 1, up to where it casts shadows.
+/// Returns the ray from `position` to the light, which is at t = 1 or distant, up to where it casts
+/// shadows.
 Ray shadow_ray(const Light& light, const dvec3& position);
 
 /// The shares, for each color, of the light that the rays leaving a surface bring, and the shares

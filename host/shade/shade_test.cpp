@@ -210,6 +210,17 @@ TEST(ShadowRay, EndsWhereTheLightIsProjectedThrough) {
     EXPECT_EQ(light_at(light, dvec3(0)).color, vec3(0)) << "of this point of the area";
 }
 
+TEST(ShadowRay, ToADistantLightHasNoEnd) {
+    Light light{.parallel = true, .distant = true};
+    light.direction = {0, -1, 0};
+    for (const double height : {-3.0, 0.0, 3.0}) { // its position is no plane that light comes from
+        const Ray ray = shadow_ray(light, {5, height, 2});
+        EXPECT_EQ(ray.dir, dvec3(0, 1, 0)) << height;
+        EXPECT_TRUE(std::isinf(ray.t_max)) << height;
+        EXPECT_EQ(light_at(light, {5, height, 2}).towards, dvec3(0, 1, 0)) << height;
+    }
+}
+
 TEST(ShadowRay, EndsAtTheLight) {
     const SurfacePoint s = surface_point(floor_scene(), kFromAbove, kShadedHit);
     const Light light{{3, 4, 5}, vec3(1)};

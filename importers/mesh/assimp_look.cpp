@@ -336,7 +336,7 @@ std::optional<Light> light_from(const aiLight& source, const aiNode& root) {
     light.direction = direction / length;
     switch (source.mType) {
     case aiLightSource_DIRECTIONAL:
-        light.parallel = true;
+        light.parallel = light.distant = true;
         light.color = color;
         return light;
     case aiLightSource_SPOT:

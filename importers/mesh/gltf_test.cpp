@@ -218,7 +218,7 @@ TEST(Gltf, PunctualLightsStandWhereTheirNodesDo) {
     EXPECT_NEAR(point.color.x * fall / read.scene.exposure, 3.0 / 16, 1e-4);
     EXPECT_NEAR(point.color.y * fall / read.scene.exposure, 1.5 / 16, 1e-4);
     const Light& sun = read.scene.lights[1];
-    EXPECT_TRUE(sun.parallel);
+    EXPECT_TRUE(sun.parallel && sun.distant);
     EXPECT_LT(glm::length(sun.direction - dvec3(0, -1, 0)), 1e-5);
     EXPECT_NEAR(sun.color.x / read.scene.exposure, 2, 1e-5);
     const Light& spot = read.scene.lights[2];

@@ -138,6 +138,14 @@ double irradiance(const Light& light, const dvec3& at) {
     return share * light.color.x;
 }
 
+TEST(PbrtMapping, DistantLightComesFromBeyondTheScene) {
+    const Scene scene =
+        scene_of(std::string("LightSource \"distant\" LightSource \"infinite\"") + kMesh);
+    ASSERT_EQ(scene.lights.size(), 2u);
+    for (const Light& light : scene.lights)
+        EXPECT_TRUE(light.parallel && light.distant) << light.stand_in;
+}
+
 /// The camera sees nothing, so that the light gets no exposure.
 TEST(PbrtMapping, LightsBringWhatPbrtsDo) {
     const struct {

@@ -140,8 +140,9 @@ void each_field(auto& io, Some<ThrownPicture> auto& t) {
 
 void each_field(auto& io, Some<Light> auto& l) {
     io(l.position, l.color, l.shadow_offset, l.faces_places, l.area_points, l.clearance, l.group,
-       l.on_camera, l.direction, l.cone, l.beam, l.parallel, l.shadowless, l.lights_media,
-       l.fades_in_air, l.fade_distance, l.fade_power, l.stand_in, l.projector, l.thrown);
+       l.on_camera, l.direction, l.cone, l.beam, l.parallel, l.distant, l.shadowless,
+       l.lights_media, l.fades_in_air, l.fade_distance, l.fade_power, l.stand_in, l.projector,
+       l.thrown);
 }
 
 void each_field(auto& io, Some<ImageWindow> auto& w) {

@@ -183,8 +183,7 @@ TEST(SceneFile, EveryFieldOfAStructIsNamed) {
     EXPECT_EQ(size(LightBeam{}), sizeof(LightBeam));
     EXPECT_EQ(size(ThrownPicture{}), sizeof(ThrownPicture) - 4 - 7);
     EXPECT_EQ(size(Optics{}), 3 * 12 + 1 + 1 + 8 + 4 + 12 + 1u);
-    EXPECT_EQ(size(Light{}),
-              24 + 12 + 24 + 1 + 4 + 8 + 4 + 1 + 24 + 1 + 1 + 1 + 1 + 1 + 1 + 8 + 8 + 1 + 1 + 1u);
+    EXPECT_EQ(size(Light{}), 24 + 12 + 24 + 1 + 4 + 8 + 4 + 1 + 24 + 7 * 1 + 8 + 8 + 1 + 1 + 1u);
     EXPECT_EQ(size(ImageWindow{}), 3 * 24 + 1 + 4 + 8 + 8 + 8u);
     EXPECT_EQ(size(Camera{}), 3 * 24 + 8 + 1 + 1 + 1 + 1 + 8 + 1u);
     EXPECT_EQ(size(FaceMesh{}), 8 + 8 + 8u);

@@ -172,7 +172,7 @@ void Lights::add_distant(const Parameters& p, const dmat4& to_world, const Place
     if (!(glm::length(direction) > 0))
         return tell_no_direction(place);
     Light light;
-    light.parallel = true;
+    light.parallel = light.distant = true;
     light.direction = glm::normalize(direction);
     // The host divides it by pi, for the BRDF of a matte surface.
     light.color = factor_of(p, "illuminance", 1) * scaled(p, "L", vec3(1));
@@ -257,7 +257,7 @@ void Lights::finish(const dvec3& view_up, Scene& scene) {
     sky_mean_ = 0.5f * (scene.background.horizon + scene.background.zenith);
     if (sky_) {
         Light above;
-        above.parallel = true;
+        above.parallel = above.distant = true;
         above.direction = glm::length(view_up) > 0 ? -glm::normalize(view_up) : dvec3(0, -1, 0);
         above.stand_in = true;
         above.color = sky_mean_ * float(pi) * kSkyFromAbove;
