@@ -164,7 +164,10 @@ enum SeenBy : uint32_t {
     kSeenInReflections = 2, // rays that a surface has reflected, mirrors or others, on their way
     kShadowsLights = 4,     // shadow rays towards Scene::lights
     kShadowsEmitters = 8,   // shadow rays towards a point of an emitting mesh
-    kSeenByAll = 15
+    kShadowsStandIns = 16,  // shadow rays towards those lights that stand for emitters
+    kShadowsAll = 28,
+    kSeenByAll = 31,
+    kSeenByNone = 32 // a mesh that only emits
 };
 
 /// Which lights shine on a mesh, as POV-Ray's light_group has it: those of its group, and those of

@@ -6,7 +6,8 @@
 namespace ovc {
 
 Sight::Sight(const Scene& scene, bool with_cutouts)
-    : has_masks_(std::ranges::any_of(scene.soup.chunks,
+    : scene_(scene),
+      has_masks_(std::ranges::any_of(scene.soup.chunks,
                                      [](const Chunk& chunk) { return chunk.mask() != 0; })),
       by_paths_(scene, Cutouts::Asked::ByPaths),
       by_shadow_rays_(scene, Cutouts::Asked::ByShadowRays),
@@ -27,8 +28,10 @@ Sieves Sight::of(std::span<const Shadow> shadows, std::vector<uint32_t>& room) c
     if (!has_masks_)
         return {.filters = filter(shadow_filter_)};
     room.resize(shadows.size());
-    std::ranges::transform(shadows, room.begin(), [](const Shadow& shadow) {
-        return shadow.light == kNone ? kShadowsEmitters : kShadowsLights;
+    std::ranges::transform(shadows, room.begin(), [&](const Shadow& shadow) {
+        return shadow.light == kNone                  ? kShadowsEmitters
+               : scene_.lights[shadow.light].stand_in ? kShadowsStandIns
+                                                      : kShadowsLights;
     });
     return {.masks = room, .filters = filter(shadow_filter_)};
 }

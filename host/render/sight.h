@@ -31,6 +31,7 @@ private:
         return {&one, one ? size_t(1) : 0};
     }
 
+    const Scene& scene_;
     const bool has_masks_;
     Cutouts by_paths_, by_shadow_rays_;
     HitFilter* const path_filter_; // null: no surface has holes

@@ -117,6 +117,19 @@ TEST(Sight, HidesFromShadowRays) {
     }
 }
 
+/// A light that stands for an emitter lies in it. Of the others an emitter throws shadows.
+TEST(Sight, TellsLightsThatStandForEmittersFromOthers) {
+    Scene scene = scene_of(kShadow, "");
+    scene.lights = {{.stand_in = true}, {}};
+    scene.show(0, kSeenByAll & ~uint32_t(kShadowsStandIns));
+    const std::vector<Shadow> shadows = {{0, 0}, {0, 1}, {0, kNone}};
+    std::vector<uint32_t> room;
+    const Sight sight(scene);
+    const Sieves sieves = sight.of(shadows, room);
+    EXPECT_EQ(std::vector(sieves.masks.begin(), sieves.masks.end()),
+              (std::vector<uint32_t>{kShadowsStandIns, kShadowsLights, kShadowsEmitters}));
+}
+
 TEST(Sight, LeavesOutWhatNoRaySees) {
     EXPECT_EQ(scene_of(kShadow, "no_image no_reflection no_shadow").meshes.size(), 1u);
 }

@@ -181,6 +181,17 @@ TEST(PathTracer, ALampWithHolesShinesWhereThereIsSome) {
                 0.75 * 0.5 * 4 * form_factor(0.8, 1.5), "and of shadow rays");
 }
 
+/// Shadow rays alone find its light, so that they count in full.
+TEST(PathTracer, ALampThatNoRaySeesShinesAlike) {
+    Scene scene = dark();
+    add_level(scene, matte(vec3(0.5f)), 0, 3, true);
+    add_level(scene, lamp(vec3(4)), 1.5, 0.8, /* up= */ false);
+    scene.show(1, kSeenByNone);
+    const double expected = 0.5 * 4 * form_factor(0.8, 1.5);
+    expect_mean(estimate(scene, at_point({2, 1, 0}, dvec3(0)), 64), expected, "none of it is lost");
+    EXPECT_EQ(estimate(scene, at_point({0, 1, 0}, {0, 9, 0}), 4).mean, 0) << "not seen";
+}
+
 /// Behind 2 of glass that keeps a share of exp(-(1 - color) x way / distance).
 TEST(PathTracer, GlassKeepsLightAsItsAbsorptionSays) {
     Scene scene = dark();

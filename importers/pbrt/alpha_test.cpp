@@ -127,6 +127,14 @@ TEST(PbrtAlpha, ConstantsCutByChance) {
     EXPECT_TRUE(read(kTriangleMesh + std::string("\"float alpha\" 0")).scene.meshes.empty());
 }
 
+TEST(PbrtAlpha, ALampThatIsNotSeenStillShines) {
+    const Read found = read("AreaLightSource \"diffuse\" \"rgb L\" [5 6 7]" +
+                            std::string(kTriangleMesh) + "\"float alpha\" 0");
+    EXPECT_EQ(found.scene.soup.chunks.at(0).mask(), kSeenByNone);
+    EXPECT_EQ(found.scene.materials[found.mesh().material].optics->emission, vec3(5, 6, 7));
+    EXPECT_FALSE(found.scene.lights.empty()) << "Whitted's model has its light too";
+}
+
 TEST(PbrtAlpha, IsTestedForZeroBeforeVersion4) {
     const std::string shape = kTriangleMesh + std::string("\"float alpha\" 0.25 ");
     EXPECT_TRUE(read("WorldBegin " + shape).scene.cutouts.at(0).partial);

@@ -199,7 +199,7 @@ TEST(PbrtMapping, AreaLightsSendOutTheirLight) {
     const Scene ball = scene_of(disk + "Shape \"sphere\"");
     for (const dvec3& at : {dvec3(10, 0, 0), dvec3(0, -10, 0), dvec3(0, 0, 10)})
         EXPECT_NEAR(sum(ball, at), 5 * kPi / 100, 0.005);
-    EXPECT_EQ(ball.soup.chunks[0].mask(), kSeenByAll & ~kShadowsLights);
+    EXPECT_EQ(ball.soup.chunks[0].mask(), kSeenByAll & ~kShadowsStandIns);
     EXPECT_EQ(ball.materials[ball.meshes[0].material].finish->ambient, vec3(5));
     // v4's power is that of each shape: the disk, and each of two triangles.
     const std::string lit = "AreaLightSource \"diffuse\" \"float power\" 5 ";

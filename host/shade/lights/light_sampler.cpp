@@ -86,8 +86,9 @@ void LightSampler::add_emitters(double reach) {
         if (!(power > 0) || !std::isfinite(power))
             continue;
         emitters_of_[m] = uint32_t(emitters_.size());
-        emitters_.push_back({m, sums_.size() - 1, optics.two_sided, optics.emission});
         const Chunk& chunk = scene_.soup.chunks[m];
+        const bool is_unseen = chunk.mask() != 0 && !(chunk.mask() & kSeenInReflections);
+        emitters_.push_back({m, sums_.size() - 1, optics.two_sided, is_unseen, optics.emission});
         for (uint32_t p = 0; p < chunk.size(); ++p) {
             const double area = glm::length(area_normal(chunk.triangle(p)));
             sums_.push_back(sums_.back() + (std::isfinite(area) ? power * area : 0));
@@ -181,7 +182,7 @@ std::optional<Arriving> LightSampler::from_emitter(const Emitters& emitters, siz
     return Arriving{{surface.position, 0, there, kBeforeEmitter},
                     towards,
                     there_is * emitters.radiance / float(density),
-                    density,
+                    emitters.is_unseen ? 0 : density,
                     kNone};
 }
 

@@ -20,8 +20,8 @@ struct Arriving {
     dvec3 towards;   // the same direction, of unit length
     vec3 light;      // an emitter's radiance / `density`, or a light's irradiance at a right angle
                      // / its probability
-    double density;  // of an emitter's place or the sky, by solid angle; 0: a light, which no ray
-                     // hits
+    double density;  // of an emitter's place or the sky, by solid angle; 0: no scattered ray finds
+                     // this light
     uint32_t number; // in Scene::lights; kNone: an emitter or the sky
 };
 
@@ -53,6 +53,7 @@ private:
         uint32_t mesh;
         size_t first;
         bool two_sided;
+        bool is_unseen; // by rays that surfaces scatter, so that only shadow rays find its light
         vec3 radiance;
     };
 

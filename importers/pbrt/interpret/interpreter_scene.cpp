@@ -53,8 +53,10 @@ std::optional<Sight> Interpreter::sight_of(const Parameters& parameters) {
         }
     }
     const Alpha alpha = alphas_.of(parameters, "alpha");
-    if (alpha.is_zero)
-        return std::nullopt;
+    if (alpha.is_zero) // an emitter still shines
+        return state_.now.emission && building_.empty()
+                   ? std::optional(Sight{.seen_by = kSeenByNone})
+                   : std::nullopt;
     const Alpha shadow = alphas_.of(parameters, "shadowalpha");
     Sight sight{alpha.cutout, shadow.cutout};
     const uint32_t material = state_.now.material;
@@ -63,9 +65,9 @@ std::optional<Sight> Interpreter::sight_of(const Parameters& parameters) {
     sight.wants_uv = sight.cutout != kNone || sight.shadow_cutout != kNone ||
                      (!state_.now.emission && materials_.wants_uv(material));
     if (shadow.is_zero)
-        sight.seen_by &= ~uint32_t(kShadowsLights | kShadowsEmitters);
+        sight.seen_by &= ~uint32_t(kShadowsAll);
     if (state_.now.emission && building_.empty()) // the lights that stand for it lie in it
-        sight.seen_by &= ~uint32_t(kShadowsLights);
+        sight.seen_by &= ~uint32_t(kShadowsStandIns);
     return sight;
 }
 

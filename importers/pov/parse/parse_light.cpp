@@ -162,7 +162,7 @@ void parse_light_source(Reader& reader, Object& object) {
     if (words.looks_like) {
         auto lamp = std::make_shared<Object>(*words.looks_like);
         place(*lamp, translation(light.position));
-        lamp->seen_by &= ~uint32_t(kShadowsLights | kShadowsEmitters);
+        lamp->seen_by &= ~uint32_t(kShadowsAll);
         object.children.push_back(lamp);
     }
     object.shape = source;

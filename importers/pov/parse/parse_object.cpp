@@ -184,7 +184,7 @@ bool parse_switch(Reader& reader, Object& object) {
     if (reader.take("global_lights"))
         object.global_lights = parse_flag(reader);
     else if (reader.take("no_shadow"))
-        parse_hiding(reader, object, kShadowsLights | kShadowsEmitters);
+        parse_hiding(reader, object, kShadowsAll);
     else if (reader.take("no_image"))
         parse_hiding(reader, object, kSeenByCamera);
     else if (reader.take("no_reflection"))
