@@ -47,7 +47,7 @@ Optics optics_at(const SurfacePoint& surface) {
         optics.reflection = glm::mix(vec3(kPlainReflection), surface.color, metal);
         optics.diffuse = (1 - metal) * surface.color;
     }
-    optics.reflection *= surface.maps.reflection;
+    optics.reflection = glm::min(optics.reflection * surface.maps.reflection, vec3(1));
     optics.width *= surface.maps.width;
     optics.emission *= surface.maps.emission;
     return optics;
@@ -65,7 +65,8 @@ static void take_color(const Scene& scene, const Material& material, const Textu
     if (material.texture) {
         const PlacedTexture& placed = *material.texture;
         const TransparentColor color = color_at(scene.textures, placed, point);
-        surface.color = color.rgb;
+        // A picture that is scaled or inverted may say that more light is sent on than arrives.
+        surface.color = material.optics ? glm::clamp(color.rgb, vec3(0), vec3(1)) : color.rgb;
         if (material.finish) {
             surface.opacity =
                 glm::clamp(opacity(color, material.finish->filter_by_brightest), 0.0f, 1.0f);

@@ -118,6 +118,18 @@ TEST(TexturePlace, ATextureTakesThePlaceOfDiffuseLightInPathTracing) {
     EXPECT_LT(glm::length(seen - vec3(0.25f, 0.5f, 0.5f) * std::numbers::inv_pi_v<float>), 1e-6f);
 }
 
+/// A picture that is scaled or inverted may be brighter than white, or darker than black.
+TEST(TexturePlace, ATextureSendsOnNoMoreLightThanArrives) {
+    const NotesArea lookup;
+    Scene scene = textured_triangle(lookup);
+    scene.materials[0].optics = Optics{.diffuse = vec3(0.9f)};
+    const Look look = look_from({0, 0, 1}, 5);
+    for (const auto& [scale, expected] : {std::pair(3.0f, vec3(0.75f, 1, 1)), {-1.0f, vec3(0)}}) {
+        scene.textures[0].image->scale = vec3(scale);
+        EXPECT_EQ(optics_at(surface_point(scene, look.ray, look.hit)).diffuse, expected) << scale;
+    }
+}
+
 TEST(TexturePlace, MapsChangeWhatTheyName) {
     const NotesArea lookup;
     Scene scene = textured_triangle(lookup);
