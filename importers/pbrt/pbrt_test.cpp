@@ -213,6 +213,29 @@ TEST(Pbrt, ObjectsArePlacedByInstances) {
     }
 }
 
+TEST(Pbrt, AttributeHandsParametersToWhatFollows) {
+    const TestFolder folder;
+    const std::string defaults = "AttributeBegin\nAttribute \"shape\" \"integer indices\" [0 1 2] "
+                                 "\"point P\" [9 9 9 8 8 8 7 7 7]\nAttribute \"shape\" \"point "
+                                 "P\" [0 0 0 1 0 0 0 1 0]\nAttribute \"light\" \"float P\" 1\n";
+    const std::string end = "AttributeEnd\nShape \"trianglemesh\"\n";
+    const std::vector<Triangle> latest{moved(dvec3(0))}, own{moved(dvec3(5, 0, 0))};
+    EXPECT_EQ(triangles(folder, defaults + "Shape \"trianglemesh\"\n" + end), latest);
+    EXPECT_EQ(triangles(folder, defaults +
+                                    "Shape \"trianglemesh\" \"point P\" [5 0 0 6 0 0 5 1 "
+                                    "0]\n" +
+                                    end),
+              own);
+    const Result<Scene> scene =
+        load(folder.write("a.pbrt", "Attribute \"material\" \"rgb Kd\" [.25 .5 .75]\nAttribute "
+                                    "\"light\" \"float scale\" 2\nMaterial \"matte\"\nLightSource "
+                                    "\"point\"\n" +
+                                        std::string(kTriangle)));
+    ASSERT_TRUE(scene) << scene.error().message;
+    EXPECT_EQ(scene->materials[scene->meshes.at(0).material].color, vec3(0.25f, 0.5f, 0.75f));
+    EXPECT_EQ(scene->lights.size(), 1u);
+}
+
 TEST(Pbrt, WarningsComeOncePerKindWithTheirPlace) {
     const TestFolder folder;
     const std::string text =

@@ -6,6 +6,7 @@
 #include "importers/pbrt/look/lights.h"
 
 #include <array>
+#include <memory>
 #include <vector>
 
 namespace ovc::pbrt {
@@ -29,12 +30,19 @@ struct Transforms {
     }
 };
 
+/// A parameter of the directives of one kind that follow, unless they state it themselves.
+struct Default {
+    std::string of; // "shape", "light", "material", "medium" or "texture"
+    Parameter parameter;
+};
+
 struct GraphicsState {
     Transforms transforms;
     uint32_t material = 0;
     std::optional<Emission> emission;
     bool reversed = false;
-    dmat3 to_srgb{1}; // from the color space of "rgb"
+    dmat3 to_srgb{1};                                     // from the color space of "rgb"
+    std::shared_ptr<const std::vector<Default>> defaults; // by Attribute, or null
     /// The meaning that names of textures and materials had where the scope began.
     struct Names {
         std::array<size_t, 2> textures{};

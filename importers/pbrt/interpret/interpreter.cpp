@@ -187,10 +187,17 @@ bool Interpreter::read_text(std::string& to) {
     return true;
 }
 
-bool Interpreter::read_typed(std::string& type, Parameters& parameters) {
+bool Interpreter::read_typed(std::string& type, Parameters& parameters, std::string_view of) {
     if (!read_text(type) || !parameters.read(tokens_, diagnostics_))
         return false;
     parameters.take_colors_through(state_.now.to_srgb);
+    if (!state_.now.defaults || of.empty())
+        return true;
+    std::vector<Parameter> defaults;
+    for (const Default& one : *state_.now.defaults)
+        if (one.of == of)
+            defaults.push_back(one.parameter);
+    parameters.put_first(std::move(defaults));
     return true;
 }
 

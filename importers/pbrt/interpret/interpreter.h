@@ -49,7 +49,8 @@ private:
     // Arguments.
     bool read_numbers(size_t count, double* to);
     bool read_text(std::string& to);
-    bool read_typed(std::string& type, Parameters& parameters);
+    /// of: the kind of directive, whose defaults the parameters get; empty: it has none.
+    bool read_typed(std::string& type, Parameters& parameters, std::string_view of = {});
 
     // Transforms: interpreter_transforms.cpp.
     bool identity();

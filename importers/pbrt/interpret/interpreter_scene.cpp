@@ -15,10 +15,17 @@
 
 namespace ovc::pbrt {
 
+/// The max number of values that Attribute may hand to every directive of a kind.
+static constexpr size_t kMaxDefaults = 1000;
+
+static size_t values_of(const Parameter& parameter) {
+    return 1 + parameter.numbers.size() + parameter.strings.size();
+}
+
 bool Interpreter::shape() {
     std::string type;
     Parameters parameters;
-    if (!read_typed(type, parameters))
+    if (!read_typed(type, parameters, "shape"))
         return false;
     const std::optional<Sight> sight = sight_of(parameters);
     const uint64_t left = options_.max_triangles - std::min(options_.max_triangles, triangles_);
@@ -118,7 +125,7 @@ bool Interpreter::store(Shape shape) {
 bool Interpreter::material() {
     std::string type;
     Parameters parameters;
-    if (!read_typed(type, parameters))
+    if (!read_typed(type, parameters, "material"))
         return false;
     state_.now.material = materials_.make(type, parameters, place_);
     tell_material(parameters, type);
@@ -128,7 +135,7 @@ bool Interpreter::material() {
 bool Interpreter::make_named_material() {
     std::string name;
     Parameters parameters;
-    if (!read_typed(name, parameters))
+    if (!read_typed(name, parameters, "material"))
         return false;
     materials_.define(name, parameters, place_);
     tell_material(parameters, parameters.text("type"));
@@ -153,7 +160,7 @@ bool Interpreter::named_material() {
 bool Interpreter::texture() {
     std::string name, value, type;
     Parameters parameters;
-    if (!read_text(name) || !read_text(value) || !read_typed(type, parameters))
+    if (!read_text(name) || !read_text(value) || !read_typed(type, parameters, "texture"))
         return false;
     const bool is_float = value == "float";
     if (is_float)
@@ -166,7 +173,7 @@ bool Interpreter::texture() {
 bool Interpreter::light_source() {
     std::string type;
     Parameters parameters;
-    if (!read_typed(type, parameters))
+    if (!read_typed(type, parameters, "light"))
         return false;
     if (lights_.add(type, parameters, now_at(state_.now.transforms), place_))
         tell_left_over(parameters, "lights", type, diagnostics_);
@@ -176,7 +183,7 @@ bool Interpreter::light_source() {
 bool Interpreter::area_light_source() {
     std::string type;
     Parameters parameters;
-    if (!read_typed(type, parameters))
+    if (!read_typed(type, parameters, "light"))
         return false;
     if (type == "none")
         state_.now.emission.reset();
@@ -233,7 +240,7 @@ bool Interpreter::color_space() {
 bool Interpreter::medium() {
     std::string type;
     Parameters parameters;
-    if (!read_typed(type, parameters))
+    if (!read_typed(type, parameters, "medium"))
         return false;
     diagnostics_.approximate("medium", place_, "fog, smoke and other media left out");
     return true;
@@ -253,10 +260,40 @@ bool Interpreter::bare_setting() {
     return pass_over();
 }
 
-/// v4's defaults for the parameters of later directives.
+/// Keeps parameters for later directives, not every one of which has a use for them.
 bool Interpreter::attribute() {
-    diagnostics_.approximate("Attribute", place_, "defaults of parameters by Attribute left out");
-    return setting();
+    std::string of;
+    Parameters parameters;
+    if (!read_typed(of, parameters))
+        return false;
+    static constexpr std::string_view kKinds[] = {"shape", "light", "material", "medium",
+                                                  "texture"};
+    if (std::ranges::find(kKinds, of) == std::end(kKinds)) {
+        diagnostics_.missing("Attribute " + of, place_,
+                             fmt::format("defaults of {} left out", ovc::quoted(of)));
+        return true;
+    }
+    const auto& now = state_.now.defaults;
+    std::vector<Default> defaults = now ? *now : std::vector<Default>();
+    size_t values = 0;
+    for (const Default& one : defaults)
+        values += values_of(one.parameter);
+    for (Parameter& parameter : parameters.all()) {
+        values += values_of(parameter);
+        if (values > kMaxDefaults)
+            return diagnostics_.fail(place_, fmt::format("found more than {} values of defaults "
+                                                         "by Attribute",
+                                                         kMaxDefaults));
+        parameter.asked = true;
+        const auto is_old = [&](const Default& old) {
+            return old.of == of && old.parameter.name == parameter.name &&
+                   old.parameter.kind == parameter.kind;
+        };
+        std::erase_if(defaults, is_old);
+        defaults.push_back({of, std::move(parameter)});
+    }
+    state_.now.defaults = std::make_shared<const std::vector<Default>>(std::move(defaults));
+    return true;
 }
 
 void Interpreter::fill(Scene& scene) {

@@ -100,9 +100,18 @@ TEST(PbrtLeftOver, CountsAndRangesThatAreWrongAreErrors) {
         EXPECT_EQ(said_of(test.text).error, test.error);
 }
 
-TEST(PbrtLeftOver, DefaultsByAttributeAreSaid) {
-    EXPECT_THAT(said_of("Attribute \"shape\" \"float alpha\" 0.5\nShape \"sphere\"").warnings,
-                ElementsAre("a.pbrt:1: defaults of parameters by Attribute left out"));
+TEST(PbrtLeftOver, DefaultsByAttributeNeedNoUse) {
+    EXPECT_THAT(said_of("Attribute \"shape\" \"float radius\" 0.5\nShape \"sphere\"\n"
+                        "Shape \"trianglemesh\" \"point P\" [0 0 0 1 0 0 0 1 0]\n")
+                    .warnings,
+                ElementsAre());
+    EXPECT_THAT(said_of("Attribute \"shapes\" \"float radius\" 0.5\nShape \"sphere\"").warnings,
+                ElementsAre("a.pbrt:1: defaults of 'shapes' left out"));
+    std::string many = "Attribute \"shape\" \"float P\" [";
+    for (int i = 0; i < 1001; ++i)
+        many += "1 ";
+    EXPECT_EQ(said_of(many + "]").error,
+              "a.pbrt:1: found more than 1000 values of defaults by Attribute");
 }
 
 } // namespace

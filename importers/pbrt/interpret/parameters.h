@@ -6,6 +6,7 @@
 #include "importers/pbrt/interpret/tokens.h"
 
 #include <initializer_list>
+#include <iterator>
 #include <span>
 #include <string>
 #include <string_view>
@@ -58,6 +59,12 @@ public:
     /// Takes the parameters "rgb" through a matrix of colors. What is no color then, because it has
     /// less than nothing of red, green or blue, has none of it.
     void take_colors_through(const dmat3& colors);
+
+    /// Puts parameters before all others, which take their place where they have the same name.
+    void put_first(std::vector<Parameter> first) {
+        list_.insert(list_.begin(), std::make_move_iterator(first.begin()),
+                     std::make_move_iterator(first.end()));
+    }
 
     /// Returns the last parameter of that name and one of these kinds, as in pbrt; null if there is
     /// none.
