@@ -80,7 +80,11 @@ vec3 of_channel(const ImageTexture& image, const vec4& found) {
     case ImageTexture::Channel::Opacity:
         return vec3(found.w);
     case ImageTexture::Channel::Mask:
-        return vec3(image.lookup->has_opacity() ? found.w : (found.x + found.y + found.z) / 3);
+        if (image.lookup->has_opacity())
+            return vec3(found.w);
+        [[fallthrough]];
+    case ImageTexture::Channel::Mean:
+        return vec3((found.x + found.y + found.z) / 3);
     }
     return vec3(found);
 }

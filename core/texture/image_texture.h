@@ -62,8 +62,8 @@ struct ImageTexture {
     /// one from +z down, which is 1 at +z. Octahedral: Clarberg's equal-area map of directions.
     enum class Projection : uint64_t { Planar, Spherical, Cylindrical, Torus, LatLong, Octahedral };
     /// Color, or a gray of one of the picture's channels. Mask: the opacity where the picture has
-    /// any, else the mean color.
-    enum class Channel : uint64_t { Color, Red, Green, Blue, Opacity, Mask };
+    /// any, else the mean color. Mean: that always.
+    enum class Channel : uint64_t { Color, Red, Green, Blue, Opacity, Mask, Mean };
 
     uint32_t picture = 0; // index into Scene::pictures
     Projection projection = Projection::Planar;

@@ -100,11 +100,15 @@ TEST(PbrtMapping, MirrorGlassMetalAndHoles) {
 TEST(PbrtMapping, SpectraBecomeTheirColors) {
     using pbrt::color_of_samples;
     const double flat[] = {400, 0.5, 700, 0.5};
-    expect_color(color_of_samples(flat), vec3(0.5f), 1e-5f, "flat");
+    expect_color(color_of_samples(flat, false), vec3(0.5f), 1e-5f, "flat");
+    const double flat_everywhere[] = {300, 0.5, 900, 0.5};
+    expect_color(color_of_samples(flat_everywhere, true), vec3(0.5f), 1e-5f, "flat in v4");
     const double red[] = {300, 0, 599, 0, 601, 1, 800, 1};
-    const vec3 r = color_of_samples(red);
-    EXPECT_GT(r.x, 4 * r.y);
-    EXPECT_GT(r.x, 4 * r.z);
+    for (const bool is_v4 : {false, true}) {
+        const vec3 r = color_of_samples(red, is_v4);
+        EXPECT_GT(r.x, 4 * r.y) << is_v4;
+        EXPECT_GT(r.x, 4 * r.z) << is_v4;
+    }
     // The colors of sRGB's white and of a candle are from Charity, "What color is a blackbody?".
     expect_color(pbrt::black_body(6500), vec3(1.03f, 0.99f, 1.0f), 0.06f, "6500 K");
     const vec3 candle = pbrt::black_body(1900);
@@ -250,6 +254,11 @@ TEST(PbrtMapping, PathTracingKnowsSurfacesAsTheFileHasThem) {
     EXPECT_EQ(gold.boundary, Boundary::Metal);
     EXPECT_GT(gold.reflection.x, 2 * gold.reflection.z);
     EXPECT_NEAR(gold.width, 0.2f, 1e-6f);
+    const Optics coat = optics_of("Material \"coatedconductor\" \"float roughness\" 1 \"float "
+                                  "conductor.uroughness\" 0.01 \"float conductor.vroughness\" 0.07 "
+                                  "\"spectrum conductor.k\" \"metal-Au-k\"");
+    EXPECT_NEAR(coat.width, 0.2f, 1e-6f) << "the mean of both, of the metal's own names";
+    EXPECT_EQ(coat.reflection, gold.reflection);
     const Optics veil = optics_of("Material \"uber\" \"color opacity\" [.25 .25 .25]");
     EXPECT_EQ(veil.boundary, Boundary::None);
     expect_color(veil.through, vec3(0.75f), 1e-6f, "holes");
@@ -355,7 +364,9 @@ TEST(PbrtMapping, AMixKeepsTheLightOfBothMaterials) {
     EXPECT_EQ(veil.color * veil.finish->diffuse, vec3(0.25f));
 }
 
-/// In v4 lights whose spectra are pairs have the luminance of white, times their scale.
+/// In v4 lights whose spectra are pairs have the luminance of white, times their scale, and the
+/// color of their spectrum, which is 0 beyond its ends. That of the same light at all wavelengths
+/// is (1.205, 0.948, 0.909) in sRGB.
 TEST(PbrtMapping, SpectraOfLightsTellNoStrengthInV4) {
     const auto light_of = [](const std::string& film) {
         const Scene scene = scene_of("Film \"" + film +
@@ -364,7 +375,41 @@ TEST(PbrtMapping, SpectraOfLightsTellNoStrengthInV4) {
         return scene.lights.at(0).color / scene.exposure;
     };
     expect_color(light_of("image"), vec3(21), 1e-3f, "v3");
-    expect_color(light_of("rgb"), vec3(3), 1e-4f, "v4");
+    expect_color(light_of("rgb"), 3.0f * vec3(1.205f, 0.948f, 0.909f), 0.03f, "v4");
+}
+
+/// The colors are those of pictures of pbrt-v4: of a white floor in such light, and of a sphere of
+/// such a material in white light.
+TEST(PbrtMapping, SpectraOfV4HaveTheColorsOfItsPictures) {
+    const auto light_of = [](const std::string& spectrum) {
+        const Scene scene =
+            scene_of("Film \"rgb\" LightSource \"distant\" \"spectrum L\" " + spectrum);
+        return scene.lights.at(0).color / scene.exposure;
+    };
+    expect_color(light_of("\"stdillum-D65\""), vec3(1), 2e-3f, "D65");
+    expect_color(light_of("\"stdillum-A\""), {1.846f, 0.827f, 0.233f}, 0.01f, "A");
+    expect_color(light_of("[400 1 500 3 600 8 700 7]"), {1.775f, 0.848f, 0.238f}, 0.03f, "pairs");
+    const auto color_of = [](const std::string& film) {
+        return material_of("Film \"" + film +
+                           "\" Material \"diffuse\" \"spectrum reflectance\" "
+                           "[400 1 500 1]")
+            .color;
+    };
+    EXPECT_GT(color_of("image").x, 0.99f) << "v3's go on beyond their ends";
+    EXPECT_LT(color_of("rgb").x, 0.05f);
+}
+
+/// A shutter that is open for a quarter of v4's time lets in a quarter of the light.
+TEST(PbrtMapping, TheShutterExposesTheFilmOfV4) {
+    const auto light_of = [](const std::string& film) {
+        const Scene scene =
+            scene_of("Film \"" + film +
+                     "\" \"float iso\" 200 Camera \"perspective\" \"float "
+                     "shutteropen\" 0.5 \"float shutterclose\" 0.75 LightSource \"distant\"");
+        return scene.lights.at(0).color / scene.exposure;
+    };
+    expect_color(light_of("rgb"), vec3(0.5f), 1e-6f, "v4");
+    expect_color(light_of("image"), vec3(2), 1e-6f, "v3");
 }
 
 TEST(PbrtMapping, CamerasSeeWhatPbrtsSee) {

@@ -190,7 +190,8 @@ TEST(PbrtTexture, DotsAndCornersLieOnTextureCoordinates) {
     EXPECT_TRUE(corners.warnings.empty());
     expect_near(corners.color_of(dvec3(0), {0.25, 0.5}), vec3(0.5f, 0.5f, 0.25f));
     expect_near(corners.color_of(dvec3(0), {1, 0}), vec3(0, 0, 1));
-    const TexturedScene dots = made("\"dots\" \"rgb inside\" [1 0 0] \"float uscale\" 40 "
+    // pbrt's pictures have "inside" around the dots.
+    const TexturedScene dots = made("\"dots\" \"rgb outside\" [1 0 0] \"float uscale\" 40 "
                                     "\"float vscale\" 40");
     int inside = 0;
     for (int i = 0; i < 10000; ++i)
@@ -436,6 +437,18 @@ TEST(PbrtTexture, AGoniometricLightThrowsItsPictureAllWays) {
     expect_near(seen({1, 0, 0}), {0.25f, 0.5f, 0.5f});
 }
 
+TEST(PbrtTexture, AGoniometricPictureOfV4HasBrightnessAlone) {
+    const TexturedScene read =
+        read_textured("LightSource \"goniometric\" \"string filename\" \"g.png\"" +
+                      std::string(kTexturedTriangle));
+    const PlacedTexture& placed = read.scene.lights.at(0).thrown->texture;
+    const vec3 seen =
+        color_at(read.scene.textures, placed.texture, glm::normalize(placed.at({0.3, 0.5, 0.7})))
+            .rgb;
+    EXPECT_EQ(seen, vec3(seen.x));
+    EXPECT_GT(seen.x, 0);
+}
+
 TEST(PbrtTexture, AProjectionLightThrowsItsPictureThroughAWindow) {
     const TexturedScene read =
         read_textured("LightSource \"projection\" \"string mapname\" \"p.png\" \"float fov\" 90" +
@@ -452,6 +465,14 @@ TEST(PbrtTexture, AProjectionLightThrowsItsPictureThroughAWindow) {
     const auto seen = color_at(read.scene.textures, light.thrown->texture.texture,
                                TexturePoint(dvec3(0.25, 0.125, 0)));
     expect_near(seen.rgb, {0.25f, 0.875f, 0.5f});
+    const TexturedScene v4 =
+        read_textured("LightSource \"projection\" \"string filename\" \"p.png\"" +
+                      std::string(kTexturedTriangle));
+    const dvec3 side = v4.scene.lights.at(0).thrown->texture.at(dvec3(3, -3, 3));
+    EXPECT_NEAR(side.x / side.z, 1, 1e-12) << "90 degrees where the file says nothing";
+    const auto upright = color_at(v4.scene.textures, v4.scene.lights[0].thrown->texture.texture,
+                                  TexturePoint(dvec3(0.25, 0.125, 0)));
+    expect_near(upright.rgb, {0.25f, 0.125f, 0.5f});
     const TexturedScene bare =
         read_textured("LightSource \"projection\"" + std::string(kTexturedTriangle));
     ASSERT_EQ(bare.warnings.size(), 1u);

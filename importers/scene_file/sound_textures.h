@@ -46,7 +46,7 @@ inline bool is_sound(const Pattern& pattern) {
 inline bool is_sound(const ImageTexture& image, size_t pictures) {
     const auto fits = [](Beyond beyond) { return beyond <= Beyond::Nothing; };
     return image.picture < pictures && image.projection <= ImageTexture::Projection::Octahedral &&
-           image.channel <= ImageTexture::Channel::Mask && fits(image.beyond_s) &&
+           image.channel <= ImageTexture::Channel::Mean && fits(image.beyond_s) &&
            fits(image.beyond_t) && image.filter <= TexelFilter::Mipmaps && image.gamma >= 0;
 }
 

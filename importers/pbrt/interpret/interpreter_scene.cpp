@@ -53,7 +53,7 @@ std::optional<Sight> Interpreter::sight_of(const Parameters& parameters) {
     if (is_invisible(materials_.all()[state_.now.material])) {
         if (!state_.now.emission)
             return std::nullopt;
-        if (lights_.is_v4()) { // it says the same
+        if (textures_.is_v4()) { // it says the same
             diagnostics_.approximate("emitting interface", place_,
                                      "shapes of the material 'interface' emit no light");
             return std::nullopt;
@@ -218,9 +218,11 @@ bool Interpreter::film() {
     Parameters parameters;
     if (!read_typed(type, parameters))
         return false;
-    film_ = read_film(parameters, diagnostics_);
-    if (type == "rgb" || type == "gbuffer" || type == "spectral") // no earlier version has these
-        lights_.read_as_v4();
+    // No earlier version has these.
+    const bool is_v4 = type == "rgb" || type == "gbuffer" || type == "spectral";
+    film_ = read_film(parameters, is_v4, diagnostics_);
+    if (is_v4)
+        textures_.read_as_v4();
     tell_left_over(parameters, "films", type, diagnostics_);
     return true;
 }
@@ -305,6 +307,8 @@ void Interpreter::fill(Scene& scene) {
     if (film_.has_size)
         scene.size = film_.size;
     scene.part = film_.part;
+    if (camera_ && textures_.is_v4())
+        film_.exposure *= float(time_of_exposure(*camera_, diagnostics_));
     if (camera_)
         scene.camera = make_camera(*camera_, film_, diagnostics_);
     lights_.finish(scene.camera ? scene.camera->up : dvec3(0, 1, 0), scene);

@@ -57,11 +57,11 @@ void take_part(const Parameters& parameters, Film& film, Diagnostics& diagnostic
 
 } // namespace
 
-Film read_film(const Parameters& parameters, Diagnostics& diagnostics) {
+Film read_film(const Parameters& parameters, bool is_v4, Diagnostics& diagnostics) {
     Film film;
-    film.has_size = parameters.find("xresolution") && parameters.find("yresolution");
-    film.size = {side_of(parameters, "xresolution", 640, diagnostics),
-                 side_of(parameters, "yresolution", 480, diagnostics)};
+    film.has_size = is_v4 || (parameters.find("xresolution") && parameters.find("yresolution"));
+    film.size = {side_of(parameters, "xresolution", is_v4 ? 1280 : 640, diagnostics),
+                 side_of(parameters, "yresolution", is_v4 ? 720 : 480, diagnostics)};
     take_part(parameters, film, diagnostics);
     // v3 scales what it writes; v4 exposes for some time at some sensitivity.
     const double scale = parameters.number("scale", 1);
@@ -119,7 +119,8 @@ std::optional<Lens> lens_of(const Parameters& p, const dmat4& to_world) {
 /// Returns the camera that sees all around: the y axis is at the top, x at the left and right edge
 /// and z a quarter from the left.
 Camera spherical_camera(const CameraRequest& request, Diagnostics& diagnostics) {
-    if (request.parameters.text("mapping", "equirectangular") != "equirectangular")
+    const char* const usual = request.type == "spherical" ? "equalarea" : "equirectangular";
+    if (request.parameters.text("mapping", usual) != "equirectangular")
         diagnostics.approximate(
             "mapping", request.place,
             "a camera 'spherical' of equal areas becomes an equirectangular one");
@@ -177,6 +178,16 @@ bool is_usable(const Camera& camera) {
 }
 
 } // namespace
+
+double time_of_exposure(const CameraRequest& request, Diagnostics& diagnostics) {
+    const Parameters& p = request.parameters;
+    const double time = p.number("shutterclose", 1) - p.number("shutteropen", 0);
+    if (time > 1e-30 && time < 1e30)
+        return time;
+    diagnostics.missing("shutter", request.place,
+                        "the shutter left out: its times leave it closed");
+    return 1;
+}
 
 bool check_camera(const CameraRequest& request, Diagnostics& diagnostics) {
     const double angle = angle_of_view(request);

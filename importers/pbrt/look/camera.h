@@ -16,8 +16,8 @@ struct Film {
     float exposure = 1;              // the factor on all light
 };
 
-/// Fails on a size, or a part of the picture, that is none.
-Film read_film(const Parameters& parameters, Diagnostics& diagnostics);
+/// Fails on a size, or a part of the picture, that is none. v4 has a size where the file says none.
+Film read_film(const Parameters& parameters, bool is_v4, Diagnostics& diagnostics);
 
 /// The arguments of the Camera directive, kept until the film is known.
 struct CameraRequest {
@@ -26,6 +26,9 @@ struct CameraRequest {
     dmat4 world_to_camera;
     Place place;
 };
+
+/// Returns how long the shutter is open, which in v4 multiplies the light on the film.
+double time_of_exposure(const CameraRequest& request, Diagnostics& diagnostics);
 
 /// Fails on an angle of view that makes no picture; returns false then.
 bool check_camera(const CameraRequest& request, Diagnostics& diagnostics);

@@ -207,9 +207,10 @@ std::optional<uint32_t> Textures::make_choice(const Definition& definition, Text
     return add_texture(scene_, std::move(texture));
 }
 
+/// All versions of pbrt show "inside" around the dots and "outside" in them.
 std::optional<uint32_t> Textures::make_dots(const Definition& definition) {
     std::optional<Texture> texture = on_plane(mapping_of(definition.request), Pattern::Kind::Dots);
-    return texture ? make_choice(definition, std::move(*texture), {"outside", "inside"})
+    return texture ? make_choice(definition, std::move(*texture), {"inside", "outside"})
                    : std::nullopt;
 }
 

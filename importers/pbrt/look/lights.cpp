@@ -39,14 +39,12 @@ float factor_of(const Parameters& p, std::string_view name, double of_one) {
 } // namespace
 
 vec3 Lights::scaled(const Parameters& p, std::string_view color, const vec3& otherwise) const {
-    vec3 light = textures_.color(p, color, otherwise);
     const Parameter* const stated = p.find(color);
-    if (is_v4_ && stated && stated->kind == Kind::Spectrum && stated->numbers.size() > 1) {
-        const float luminance = glm::dot(light, vec3(0.2126f, 0.7152f, 0.0722f));
-        light /= luminance > 0 ? luminance : 1;
-    }
+    const bool is_spectrum = textures_.is_v4() && stated && stated->kind == Kind::Spectrum;
+    const std::optional<vec3> light = is_spectrum ? illuminant(*stated) : std::nullopt;
     // v2 and v3 scale by a color, v4 by a number.
-    return light * textures_.color(p, "scale", vec3(1));
+    return (light ? *light : textures_.color(p, color, otherwise)) *
+           textures_.color(p, "scale", vec3(1));
 }
 
 bool Lights::add(const std::string& type, const Parameters& parameters, const dmat4& to_world,
@@ -118,13 +116,17 @@ void Lights::add_goniometric(const Parameters& p, const dmat4& to_world, const P
     add_point(p, to_world);
     if (!picture_of(p))
         return;
-    ImageTexture picture = around(p.find("filename") != nullptr);
+    const bool is_v4 = p.find("filename") != nullptr;
+    ImageTexture picture = around(is_v4);
     picture.otherwise = {vec3(1)};
+    if (is_v4) // it has brightness alone there
+        picture.channel = ImageTexture::Channel::Mean;
     const dmat3 upright(dvec3(1, 0, 0), dvec3(0, 0, 1), dvec3(0, 1, 0));
     lights_.back().thrown = thrown(p, upright * glm::inverse(dmat3(to_world)), picture, place);
 }
 
-/// "fov" is the angle of the shorter side of a window, on whose lower edge the first row lies.
+/// "fov" is the angle of the shorter side of a window. The first row of v4's "filename" lies on its
+/// upper edge, and that of v3's "mapname" on its lower one.
 void Lights::add_projection(const Parameters& p, const dmat4& to_world, const Place& place) {
     if (!picture_of(p)) {
         diagnostics_.approximate("projection", place,
@@ -132,12 +134,14 @@ void Lights::add_projection(const Parameters& p, const dmat4& to_world, const Pl
         return add_spot(p, to_world, place);
     }
     add_point(p, to_world);
+    const bool is_v4 = p.find("filename") != nullptr;
     ImageTexture picture;
-    picture.to_picture = {dvec3(1, 0, 0), dvec3(0, -1, 1)};
+    if (!is_v4)
+        picture.to_picture = {dvec3(1, 0, 0), dvec3(0, -1, 1)};
     picture.beyond_s = picture.beyond_t = Beyond::Clamp;
     picture.filter = TexelFilter::Smooth;
     picture.otherwise = {vec3(1)};
-    const double angle = std::clamp(p.number("fov", 45), 1e-3, 179.9);
+    const double angle = std::clamp(p.number("fov", is_v4 ? 90 : 45), 1e-3, 179.9);
     const double by_side = 1 / std::tan(angle * (pi / 360));
     const dmat3 to_window(dvec3(by_side, 0, 0), dvec3(0, by_side, 0), dvec3(0, 0, 1));
     lights_.back().thrown = thrown(p, to_window * glm::inverse(dmat3(to_world)), picture, place);

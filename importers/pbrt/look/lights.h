@@ -23,10 +23,6 @@ public:
     Lights(Textures& textures, Diagnostics& diagnostics)
         : textures_(textures), diagnostics_(diagnostics) {}
 
-    /// The lights that follow are those of v4, whose spectra tell no strength: each counts as if
-    /// its luminance were 1.
-    void read_as_v4() { is_v4_ = true; }
-    bool is_v4() const { return is_v4_; }
     /// Returns false, after a warning, for a type that is not known.
     bool add(const std::string& type, const Parameters& parameters, const dmat4& to_world,
              const Place& place);
@@ -58,7 +54,6 @@ private:
     std::vector<Light> area_lights_;
     std::optional<Background> sky_; // with its maps as layers
     vec3 sky_mean_{0};
-    bool is_v4_ = false;
     bool any_ = false; // whether the file has a light of any kind
 };
 

@@ -15,11 +15,12 @@ constexpr double kMirrorRoughness = 0.1;
 /// The index of refraction of plastic, paint and other materials that do not state one.
 constexpr double kPlasticIor = 1.5;
 
-/// Returns the roughness that most materials have.
-double roughness_of(const MaterialContext& c, double otherwise) {
-    double r = c.number("roughness", otherwise);
-    if (c.p.find("uroughness") || c.p.find("vroughness"))
-        r = 0.5 * (c.number("uroughness", r) + c.number("vroughness", r));
+/// Returns the roughness that most materials have. of: what stands before the parameters' names.
+double roughness_of(const MaterialContext& c, double otherwise, const std::string& of = {}) {
+    const std::string along_u = of + "uroughness", along_v = of + "vroughness";
+    double r = c.number(of + "roughness", otherwise);
+    if (c.p.find(along_u) || c.p.find(along_v))
+        r = 0.5 * (c.number(along_u, r) + c.number(along_v, r));
     return std::clamp(r, 0.0, 1.0);
 }
 
@@ -202,12 +203,10 @@ Material make_thin_glass(const MaterialContext& c) {
     return make_glass(c, true);
 }
 
-vec3 metal_of(const MaterialContext& c) {
+vec3 metal_of(const MaterialContext& c, const std::string& of = {}) {
     if (c.p.find("reflectance"))
         return c.color("reflectance", 0.9f);
-    // v4 gives the metal below a coat names of its own.
-    const bool coated = c.p.find("conductor.eta") || c.p.find("conductor.k");
-    const std::string eta = coated ? "conductor.eta" : "eta", k = coated ? "conductor.k" : "k";
+    const std::string eta = of + "eta", k = of + "k";
     for (const Parameter* const p : {c.p.find(eta), c.p.find(k)})
         if (p && !p->strings.empty())
             if (const auto color = metal_color(p->strings[0]))
@@ -243,13 +242,21 @@ Material make_metal(const MaterialContext& c) {
     return m;
 }
 
-Material make_conductor(const MaterialContext& c) {
-    const bool coated = c.p.find("conductor.roughness") != nullptr;
-    const double roughness =
-        coated ? std::clamp(c.number("conductor.roughness", 0), 0.0, 1.0) : roughness_of(c, 0);
-    Material m = metal(metal_of(c), width_of(c, roughness));
+/// of: what stands before the names of the metal's parameters.
+Material conductor(const MaterialContext& c, const std::string& of) {
+    Material m = metal(metal_of(c, of), width_of(c, roughness_of(c, 0, of)));
     take_reflection(c, "reflectance", m);
     return m;
+}
+
+Material make_conductor(const MaterialContext& c) {
+    return conductor(c, {});
+}
+
+/// The metal below a coat has names of its own.
+Material make_coated_conductor(const MaterialContext& c) {
+    c.diagnostics.approximate("coat of a metal", c.place, "the coats of metals are left out");
+    return conductor(c, "conductor.");
 }
 
 Material make_shiny_metal(const MaterialContext& c) {
@@ -365,7 +372,7 @@ constexpr Family kFamilies[] = {{"matte", make_matte},
                                 {"thindielectric", make_thin_glass},
                                 {"metal", make_metal},
                                 {"conductor", make_conductor},
-                                {"coatedconductor", make_conductor},
+                                {"coatedconductor", make_coated_conductor},
                                 {"shinymetal", make_shiny_metal},
                                 {"uber", make_uber},
                                 {"translucent", make_translucent},

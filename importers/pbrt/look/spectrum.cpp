@@ -43,18 +43,62 @@ vec3 without_negatives(const dvec3& color) {
     return vec3(glm::max(color, dvec3(0)));
 }
 
+/// Returns the value of pairs (nm, value) at a wavelength. ends: it is 0 beyond them.
+double value_at(std::span<const double> pairs, double nm, bool ends) {
+    const size_t count = pairs.size() / 2;
+    size_t i = 0;
+    while (i < count && pairs[2 * i] < nm)
+        ++i;
+    if (i == count || (i == 0 && pairs[0] > nm))
+        return ends ? 0 : pairs[2 * std::min(i, count - 1) + 1];
+    if (i == 0)
+        return pairs[1];
+    const double below = pairs[2 * i - 2], width = pairs[2 * i] - below;
+    const double share = width > 0 ? (nm - below) / width : 0;
+    return pairs[2 * i - 1] + share * (pairs[2 * i + 1] - pairs[2 * i - 1]);
+}
+
+/// Returns the power of D65 at nm, up to a factor.
+double daylight(double nm) {
+    // From 380 nm on in steps of 10, from CIE 15.
+    static constexpr double kPower[] = {
+        49.98,  54.65,  82.75,  91.49,  93.43,  86.68,  104.87, 117.01, 117.81, 114.86, 115.92,
+        108.81, 109.35, 107.80, 104.79, 107.69, 104.41, 104.05, 100.00, 96.33,  95.79,  88.69,
+        90.01,  89.60,  87.70,  83.29,  83.70,  80.03,  80.21,  82.28,  78.28,  69.72,  71.61,
+        74.35,  61.60,  69.89,  75.09,  63.59,  46.42,  66.81,  63.38};
+    const double at = std::clamp((nm - 380) / 10, 0.0, double(std::size(kPower) - 1));
+    const size_t below = std::min(size_t(at), std::size(kPower) - 2);
+    return kPower[below] + (at - double(below)) * (kPower[below + 1] - kPower[below]);
+}
+
+struct Illuminant {
+    std::string_view name;
+    double x, y; // CIE 1931
+};
+
+// From CIE 15; ACES' white from SMPTE ST 2065-1.
+constexpr Illuminant kIlluminants[] = {
+    {"stdillum-A", 0.44758, 0.40745},   {"stdillum-D50", 0.34567, 0.35851},
+    {"stdillum-D65", 0.31272, 0.32903}, {"stdillum-F1", 0.31310, 0.33727},
+    {"stdillum-F2", 0.37208, 0.37529},  {"stdillum-F3", 0.40910, 0.39430},
+    {"stdillum-F4", 0.44018, 0.40329},  {"stdillum-F5", 0.31379, 0.34531},
+    {"stdillum-F6", 0.37790, 0.38835},  {"stdillum-F7", 0.31292, 0.32933},
+    {"stdillum-F8", 0.34588, 0.35875},  {"stdillum-F9", 0.37417, 0.37281},
+    {"stdillum-F10", 0.34609, 0.35986}, {"stdillum-F11", 0.38052, 0.37713},
+    {"stdillum-F12", 0.43695, 0.40441}, {"illum-acesD60", 0.32168, 0.33767}};
+
 struct Metal {
     std::string_view symbol;
     vec3 color;
 };
 
-// The colors are linear sRGB, seen head on. They are from Lagarde 2011, "Feeding a Physically
-// Based Shading Model"; brass from physicallybased.info; the oxides from their indices, 1.74 and
-// 2.6.
-constexpr Metal kMetals[] = {{"Ag", {0.972f, 0.960f, 0.915f}},  {"Al", {0.913f, 0.921f, 0.925f}},
-                             {"Au", {1.000f, 0.766f, 0.336f}},  {"CuZn", {0.887f, 0.789f, 0.434f}},
-                             {"Cu", {0.955f, 0.637f, 0.538f}},  {"Cr", {0.550f, 0.556f, 0.554f}},
-                             {"MgO", {0.073f, 0.073f, 0.073f}}, {"TiO2", {0.198f, 0.198f, 0.198f}}};
+// The colors are linear sRGB, seen head on in white light, as measured in pictures of pbrt-v4, of
+// gold as far as sRGB has them; chrome, which v4 does not name, is from Lagarde 2011, "Feeding a
+// Physically Based Shading Model".
+constexpr Metal kMetals[] = {{"Ag", {0.972f, 0.960f, 0.911f}},  {"Al", {0.913f, 0.922f, 0.920f}},
+                             {"Au", {1.000f, 0.782f, 0.342f}},  {"CuZn", {0.910f, 0.778f, 0.421f}},
+                             {"Cu", {0.956f, 0.638f, 0.536f}},  {"Cr", {0.550f, 0.556f, 0.554f}},
+                             {"MgO", {0.072f, 0.073f, 0.075f}}, {"TiO2", {0.232f, 0.245f, 0.271f}}};
 
 struct Glass {
     std::string_view name;
@@ -110,24 +154,29 @@ vec3 black_body(double kelvin) {
     return without_negatives(rgb_of_xyz(xyz / xyz.y));
 }
 
-vec3 color_of_samples(std::span<const double> pairs) {
-    const size_t count = pairs.size() / 2;
-    assert(count > 0);
-    const auto value_at = [&](double nm) {
-        size_t i = 0;
-        while (i < count && pairs[2 * i] < nm)
-            ++i;
-        if (i == 0 || i == count)
-            return pairs[2 * std::min(i, count - 1) + 1];
-        const double below = pairs[2 * i - 2], width = pairs[2 * i] - below;
-        const double share = width > 0 ? (nm - below) / width : 0;
-        return pairs[2 * i - 1] + share * (pairs[2 * i + 1] - pairs[2 * i - 1]);
-    };
-    const auto white = rgb_of_xyz(integrate([](double) { return 1.0; }));
-    return without_negatives(rgb_of_xyz(integrate(value_at)) / white);
+vec3 color_of_samples(std::span<const double> pairs, bool is_v4) {
+    assert(pairs.size() >= 2);
+    const auto light_at = [&](double nm) { return is_v4 ? daylight(nm) : 1.0; };
+    const auto white = rgb_of_xyz(integrate(light_at));
+    const auto seen =
+        integrate([&](double nm) { return light_at(nm) * value_at(pairs, nm, /* ends= */ is_v4); });
+    return without_negatives(rgb_of_xyz(seen) / white);
 }
 
-std::optional<vec3> color_of(const Parameter& parameter) {
+std::optional<vec3> illuminant(const Parameter& parameter) {
+    if (parameter.numbers.size() > 1) {
+        const dvec3 xyz =
+            integrate([&](double nm) { return value_at(parameter.numbers, nm, /* ends= */ true); });
+        return xyz.y > 0 ? std::optional(without_negatives(rgb_of_xyz(xyz / xyz.y))) : vec3(0);
+    }
+    for (const Illuminant& named : kIlluminants)
+        if (!parameter.strings.empty() && parameter.strings[0] == named.name)
+            return without_negatives(
+                rgb_of_xyz({named.x / named.y, 1, (1 - named.x - named.y) / named.y}));
+    return std::nullopt;
+}
+
+std::optional<vec3> color_of(const Parameter& parameter, bool is_v4) {
     const std::vector<double>& n = parameter.numbers;
     switch (parameter.kind) {
     case Kind::Float:
@@ -148,7 +197,7 @@ std::optional<vec3> color_of(const Parameter& parameter) {
     case Kind::Spectrum:
         if (n.size() == 1)
             return vec3(float(n[0]));
-        return n.size() < 2 ? std::nullopt : std::optional(color_of_samples(n));
+        return n.size() < 2 ? std::nullopt : std::optional(color_of_samples(n, is_v4));
     default:
         return std::nullopt;
     }

@@ -145,7 +145,7 @@ vec3 Textures::color(const Parameters& parameters, std::string_view name,
                                          ovc::quoted(p->strings.empty() ? "" : p->strings[0])));
         return otherwise;
     }
-    const auto found = color_of(*p);
+    const auto found = color_of(*p, is_v4_);
     if (!found && p->kind == Kind::Spectrum)
         diagnostics_.approximate(
             "spectrum by name", p->place,

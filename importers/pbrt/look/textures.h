@@ -33,6 +33,11 @@ public:
     Textures(Diagnostics& diagnostics, const Tokens& tokens)
         : diagnostics_(diagnostics), tokens_(tokens) {}
 
+    /// What follows is read as v4 does; lights too, whose spectra then tell no strength: each
+    /// counts as if its luminance were 1.
+    void read_as_v4() { is_v4_ = true; }
+    bool is_v4() const { return is_v4_; }
+
     /// Adds a texture. Warns of a pattern that is shown by its mean wherever it is used, but not of
     /// floats, which Alphas may evaluate.
     void define(const std::string& name, TextureRequest request);
@@ -92,7 +97,7 @@ private:
     std::optional<uint32_t> make_checkerboard(const Definition& definition);
     std::optional<uint32_t> make_combined(const Definition& definition, TextureKind kind,
                                           std::initializer_list<std::string_view> names);
-    /// Adds a texture of one of two parameters: that of `inside` where the pattern is 1.
+    /// Adds a texture of one of two parameters: the second where the pattern is 1.
     std::optional<uint32_t> make_choice(const Definition& definition, Texture texture,
                                         const std::array<std::string_view, 2>& names);
     std::optional<uint32_t> make_dots(const Definition& definition);
@@ -103,6 +108,7 @@ private:
 
     Diagnostics& diagnostics_;
     const Tokens& tokens_;
+    bool is_v4_ = false;
     std::vector<Definition> definitions_;        // those of a name that was defined anew stay
     std::array<ScopedNames<size_t>, 2> by_name_; // those of colors, then those of floats
     Scene scene_;                                // only its textures and pictures

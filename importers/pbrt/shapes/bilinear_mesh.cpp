@@ -15,12 +15,11 @@ namespace {
 struct BilinearPatch {
     dvec3 p[4];
     dvec2 uv[4] = {{0, 0}, {1, 0}, {0, 1}, {1, 1}}; // texture coordinates of the corners
+    dvec3 normal[4]{};                              // of the corners; 0: the file has none
 
-    dvec3 at(double u, double v) const {
-        return glm::mix(glm::mix(p[0], p[1], u), glm::mix(p[2], p[3], u), v);
-    }
-    dvec2 uv_at(double u, double v) const {
-        return glm::mix(glm::mix(uv[0], uv[1], u), glm::mix(uv[2], uv[3], u), v);
+    template <class T>
+    static T between(const T (&of)[4], double u, double v) {
+        return glm::mix(glm::mix(of[0], of[1], u), glm::mix(of[2], of[3], u), v);
     }
     double size() const {
         Box box;
@@ -46,15 +45,21 @@ uint32_t steps_for(const std::vector<BilinearPatch>& patches, double tolerance) 
     return uint32_t(std::min(steps, kMaxPatchSteps));
 }
 
-void add_patch(const BilinearPatch& patch, uint32_t steps, bool with_uv, Mesh& mesh) {
+void add_patch(const BilinearPatch& patch, uint32_t steps, bool with_uv, bool with_normals,
+               Mesh& mesh) {
     assert(steps >= 1 && steps <= kMaxPatchSteps);
     const auto first = uint32_t(mesh.positions.size() / 3);
     const uint32_t row = steps + 1;
     for (uint32_t v = 0; v <= steps; ++v)
         for (uint32_t u = 0; u <= steps; ++u) {
-            mesh.add_vertex(patch.at(double(u) / steps, double(v) / steps));
+            const auto here = [&](const auto& of) {
+                return BilinearPatch::between(of, double(u) / steps, double(v) / steps);
+            };
+            mesh.add_vertex(here(patch.p));
             if (with_uv)
-                mesh.uv.emplace_back(patch.uv_at(double(u) / steps, double(v) / steps));
+                mesh.uv.emplace_back(here(patch.uv));
+            if (with_normals)
+                mesh.normals.emplace_back(here(patch.normal));
         }
     for (uint32_t v = 0; v < steps; ++v)
         for (uint32_t u = 0; u < steps; ++u) {
@@ -78,12 +83,15 @@ std::optional<Mesh> make_bilinear_mesh(ShapeRequest& request) {
     if (indices->empty())
         return left_out(request, "it has no indices");
     const std::vector<vec2> uv = take_uv(request, points.size() / 3);
+    const std::vector<vec3> normals = take_normals(request, points.size() / 3);
     std::vector<BilinearPatch> patches(indices->size() / 4);
     for (size_t i = 0; i < indices->size(); ++i) {
         const double* p = points.data() + size_t((*indices)[i]) * 3;
         patches[i / 4].p[i % 4] = {p[0], p[1], p[2]};
         if (!uv.empty())
             patches[i / 4].uv[i % 4] = dvec2(uv[(*indices)[i]]);
+        if (!normals.empty())
+            patches[i / 4].normal[i % 4] = dvec3(normals[(*indices)[i]]);
     }
     const uint32_t steps = steps_for(patches, request.tolerance);
     if (patches.size() * 2 * steps * steps > request.max_triangles) {
@@ -97,7 +105,7 @@ std::optional<Mesh> make_bilinear_mesh(ShapeRequest& request) {
     Mesh mesh;
     mesh.emitters = patches.size();
     for (const BilinearPatch& patch : patches)
-        add_patch(patch, steps, request.wants_uv, mesh);
+        add_patch(patch, steps, request.wants_uv, !normals.empty(), mesh);
     return mesh;
 }
 

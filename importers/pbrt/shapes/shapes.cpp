@@ -30,24 +30,6 @@ constexpr Maker kMakers[] = {{"trianglemesh", make_triangle_mesh},
                              {"paraboloid", make_quadric},
                              {"hyperboloid", make_quadric}};
 
-/// Returns one normal per vertex, or none.
-std::vector<vec3> take_normals(ShapeRequest& request, size_t vertices) {
-    const std::vector<double> numbers =
-        request.parameters.take("N", {Kind::Normal, Kind::Vector3, Kind::Point3});
-    if (numbers.size() != 3 * vertices) {
-        if (!numbers.empty())
-            request.diagnostics.missing("normals of " + std::string(request.type), request.place,
-                                        fmt::format("normals left out: found {} numbers for {}",
-                                                    numbers.size(), counted(vertices, "point")));
-        return {};
-    }
-    std::vector<vec3> normals(vertices);
-    for (size_t i = 0; i < vertices; ++i)
-        normals[i] =
-            vec3(float(numbers[3 * i]), float(numbers[3 * i + 1]), float(numbers[3 * i + 2]));
-    return normals;
-}
-
 /// Notes in the mesh the data of its vertices that it has no use for.
 std::optional<Mesh> told(std::optional<Mesh> mesh, const ShapeRequest& request) {
     const Parameters& parameters = request.parameters;
@@ -103,6 +85,23 @@ std::vector<vec2> take_uv(ShapeRequest& request, size_t vertices) {
     for (size_t i = 0; i < vertices; ++i)
         uv[i] = vec2(float(numbers[2 * i]), float(numbers[2 * i + 1]));
     return uv;
+}
+
+std::vector<vec3> take_normals(ShapeRequest& request, size_t vertices) {
+    const std::vector<double> numbers =
+        request.parameters.take("N", {Kind::Normal, Kind::Vector3, Kind::Point3});
+    if (numbers.size() != 3 * vertices) {
+        if (!numbers.empty())
+            request.diagnostics.missing("normals of " + std::string(request.type), request.place,
+                                        fmt::format("normals left out: found {} numbers for {}",
+                                                    numbers.size(), counted(vertices, "point")));
+        return {};
+    }
+    std::vector<vec3> normals(vertices);
+    for (size_t i = 0; i < vertices; ++i)
+        normals[i] =
+            vec3(float(numbers[3 * i]), float(numbers[3 * i + 1]), float(numbers[3 * i + 2]));
+    return normals;
 }
 
 std::optional<std::vector<uint32_t>> take_indices(ShapeRequest& request, size_t vertices,

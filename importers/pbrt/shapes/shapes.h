@@ -47,6 +47,9 @@ std::vector<double> take_points(ShapeRequest& request);
 /// Returns the texture coordinates of the vertices, or none: where the request wants none, the file
 /// has none, or, with a warning, where their number is wrong.
 std::vector<vec2> take_uv(ShapeRequest& request, size_t vertices);
+/// Returns the normals of the vertices, or none: where the file has none, or, with a warning, where
+/// their number is wrong.
+std::vector<vec3> take_normals(ShapeRequest& request, size_t vertices);
 /// Warns that the shape is left out, and why.
 std::nullopt_t left_out(ShapeRequest& request, std::string_view why);
 

@@ -219,6 +219,22 @@ TEST(PbrtShapes, BilinearPatchesAreCutAsTheyBend) {
             EXPECT_NEAR(p.z, p.x * p.y, 1e-6);
 }
 
+TEST(PbrtShapes, BilinearPatchesHaveTheirNormals) {
+    const TestFolder folder;
+    const Result<Scene> scene = load(folder.write(
+        "a.pbrt", "Shape \"bilinearmesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0 1 1 0] \"normal N\" "
+                  "[-1 -1 1  1 -1 1  -1 1 1  1 1 1]"));
+    ASSERT_TRUE(scene) << scene.error().message;
+    const Chunk& chunk = scene->soup.chunks.at(0);
+    const std::vector<vec3>& normals = scene->meshes[0].normals;
+    ASSERT_EQ(normals.size(), 3 * chunk.size());
+    for (size_t i = 0; i < normals.size(); ++i) {
+        const vec3 corner(chunk.triangle(uint32_t(i / 3))[i % 3]);
+        const vec3 expected = glm::normalize(vec3(2.0f * vec2(corner) - 1.0f, 1));
+        EXPECT_LT(glm::length(normals[i] - expected), 1e-3f) << i;
+    }
+}
+
 TEST(PbrtShapes, PlyMeshesAreReadAndMoved) {
     const TestFolder folder;
     const std::string ply =
