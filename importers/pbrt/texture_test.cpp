@@ -263,6 +263,9 @@ TEST(PbrtTexture, WordsThatPbrtRefusesAreSaid) {
     EXPECT_EQ(warnings("\"string wrap\" \"mirror\""),
               (std::vector<std::string>{
                   "a.pbrt:2: the wrap 'mirror' of a texture left out: it is unknown"}));
+    EXPECT_EQ(
+        warnings("\"string wrap\" \"octahedralsphere\""),
+        (std::vector<std::string>{"a.pbrt:2: textures that wrap around a sphere are repeated"}));
     EXPECT_EQ(warnings("\"string filter\" \"cubic\" \"string encoding\" \"rec709\"").size(), 2u);
     EXPECT_TRUE(warnings("\"string filter\" \"EWA\" \"string encoding\" \"gamma 2.2\"").empty());
 }

@@ -127,7 +127,10 @@ std::optional<uint32_t> Textures::make_image(const TextureRequest& request) {
     const std::string file = p.text("filename");
     if (!mapping || file.empty())
         return std::nullopt;
-    check_word(p, "wrap", {"repeat", "clamp", "black"});
+    check_word(p, "wrap", {"repeat", "clamp", "black", "octahedralsphere"});
+    if (p.text("wrap") == "octahedralsphere")
+        diagnostics_.approximate("wrap", p.find("wrap")->place,
+                                 "textures that wrap around a sphere are repeated");
     check_word(p, "filter", {"point", "bilinear", "trilinear", "EWA", "ewa"});
     if (!p.text("encoding").starts_with("gamma"))
         check_word(p, "encoding", {"sRGB", "linear"});
