@@ -117,12 +117,11 @@ dvec3 faceted(const Pattern& pattern, const dvec3& at, const dvec3& normal) {
     using P = FacetParameter;
     const std::array<double, 10>& p = pattern.parameters;
     const CrackleMetric metric{p[P::kMetric], 0};
-    if (p[P::kCoords] > 0) {
-        constexpr double kCells = 10; // in a unit of the pattern
-        const dvec3 noise = vector_noise(nearest_points(kCells * at, metric).nearest);
-        return normal + p[P::kCoords] * (noise - glm::dot(noise, normal) * normal);
-    }
-    return p[P::kSize] > 0 ? nearest_points(normal / p[P::kSize], metric).nearest : normal;
+    const double size = p[P::kSize] < 1e-6 ? 1e-6 : p[P::kSize];
+    if (p[P::kCoords] == 0)
+        return nearest_points(normal / size, metric).nearest;
+    const dvec3 noise = vector_noise(nearest_points(at / size, metric).nearest);
+    return normal + p[P::kCoords] * (noise - glm::dot(noise, normal) * normal);
 }
 
 dvec3 tilt(const Around& around, const Bump& bump) {

@@ -20,8 +20,8 @@ struct SlopeStop {
 /// The places of what Bump::Kind::Facets needs among its pattern's parameters.
 struct FacetParameter {
     enum Place : size_t {
-        kCoords,    // above 0: noise is added in cells of size 0.1, so many times
-        kSize,      // without that: the size of cells of normals, above 0
+        kCoords,    // not 0: noise is added in cells of space, so many times
+        kSize,      // the size of cells, of space or of normals; below 1e-6 it is that
         kMetric = 3 // as for crackle
     };
 };

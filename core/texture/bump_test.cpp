@@ -63,7 +63,7 @@ const AskedNormal kAskedNormals[] = {
      {.kind = Bump::Kind::Quilted, .amount = 0.5},
      {{-0.03918, 0.03918, -0.99846}, {0.03918, 0.03918, -0.99846}}},
     {"facets coords 1",
-     {.kind = Kind::Crackle, .parameters = {1, 0, 0, 2}},
+     {.kind = Kind::Crackle, .parameters = {1, 0.1, 0, 2}},
      {.kind = Bump::Kind::Facets},
      {{0.12317, 0.28298, -0.9512}, {-0.19991, -0.24195, -0.94947}}},
     {"facets size 0.3",

@@ -89,13 +89,26 @@ dvec3 moved(const Pattern& pattern, dvec3 at) {
     return at;
 }
 
+std::vector<TextureStep> steps_of(const Pattern& pattern) {
+    std::vector<TextureStep> steps = pattern.steps;
+    if (pattern.turbulence != dvec3(0) && !adds_turbulence(pattern.kind)) {
+        const Octaves& octaves = pattern.octaves;
+        steps.push_back({TextureStep::Kind::Turbulence,
+                         {dvec4(pattern.turbulence, octaves.lambda),
+                          dvec4(octaves.omega, double(octaves.count), 0, 0), dvec4(0)}});
+    }
+    return steps;
+}
+
 double value_of_moved(std::span<const Texture> textures, const Pattern& pattern,
                       const TexturePoint& point) {
     if (!is_in_reach(point.at))
         return 0;
-    if (is_discrete(pattern.kind))
+    if (is_discrete(pattern))
         return discrete_value(pattern, point.at);
-    const double value = wave_of(pattern, continuous_value(textures, pattern, point));
+    const double value =
+        wave_of(pattern, has_cells(pattern.kind) ? discrete_value(pattern, point.at)
+                                                 : continuous_value(textures, pattern, point));
     return std::isfinite(value) ? value : 0;
 }
 
@@ -197,8 +210,7 @@ TransparentColor color_at(std::span<const Texture> textures, const PlacedTexture
                           const TexturePoint& world) {
     const Texture& texture = textures[placed.texture];
     // The rest of a place does not count for the plain colors that most discrete patterns have.
-    if (texture.kind == TextureKind::Pattern && is_discrete(texture.pattern.kind) &&
-        !texture.on_uv) {
+    if (texture.kind == TextureKind::Pattern && is_discrete(texture.pattern) && !texture.on_uv) {
         const dvec3 at = moved(texture.pattern, placed.at(world.at));
         const double value = value_of_moved(textures, texture.pattern, at);
         const TextureStop& stop = texture.stops[stops_at(texture, value).first];

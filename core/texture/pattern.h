@@ -62,6 +62,9 @@ void for_each_averaged(std::span<const TextureStop> stops, const Use& use) {
         use(stop, weights > 0 ? stop.at / weights : 1.0 / double(stops.size()));
 }
 
+/// Returns the steps by which moved() moves a point; the last of them may be its turbulence.
+std::vector<TextureStep> steps_of(const Pattern& pattern);
+
 /// Two neighbouring stops, by their indices, and the share of the second.
 struct Between {
     size_t first, second;
@@ -87,16 +90,25 @@ Between between(size_t count, const At& at, double value, bool discrete) {
     return {next - 1, next, (value - at(next - 1)) / (at(next) - at(next - 1))};
 }
 
-/// Returns whether the values of the pattern are whole numbers, which choose a stop.
-inline bool is_discrete(Pattern::Kind kind) {
+/// Returns whether the pattern has whole numbers as values, before its wave.
+inline bool has_cells(Pattern::Kind kind) {
     return kind >= Pattern::Kind::Brick;
+}
+
+/// Returns whether the values of the pattern are whole numbers, which choose a stop. Those that a
+/// wave or a frequency changes lie between stops.
+inline bool is_discrete(const Pattern& pattern) {
+    const bool moves = pattern.phase != 0 || pattern.frequency != 1;
+    return has_cells(pattern.kind) &&
+           (pattern.wave == Pattern::Wave::None ||
+            (pattern.wave == Pattern::Wave::Ramp && (pattern.frequency == 0 || !moves)));
 }
 
 /// Returns where a value of the texture's pattern lies among its stops.
 inline Between stops_at(const Texture& texture, double value) {
     return between(
         texture.stops.size(), [&](size_t i) { return texture.stops[i].at; }, value,
-        is_discrete(texture.pattern.kind));
+        is_discrete(texture.pattern));
 }
 
 } // namespace ovc

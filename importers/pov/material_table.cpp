@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "importers/pov/material_table.h"
 
+#include "core/texture/pattern.h"
 #include "importers/pov/parse/texture.h"
 
 #include <fmt/format.h>
@@ -87,13 +88,62 @@ bool MaterialTable::has_part_on_uv(const ovc::Material& material) const {
                        [&](const TextureStop& stop) { return on_uv_[stop.texture]; });
 }
 
+/// Puts the steps in front of those of the pigment's pattern.
+static void put_in_front(const std::vector<TextureStep>& steps, Pigment& pigment) {
+    if (!pigment.pattern)
+        return;
+    auto map = std::make_shared<PatternMap>(*pigment.pattern);
+    std::vector<TextureStep>& own = map->pattern.steps;
+    put_in_front(pigment.placed, map->pattern);
+    own.insert(own.begin(), steps.begin(), steps.end());
+    pigment.placed = dmat4(1);
+    pigment.pattern = std::move(map);
+}
+
+static void put_in_front(const std::vector<TextureStep>& steps, bool on_uv, Texture& texture) {
+    for (Pigment* const part : {&texture.pigment, &texture.mix, &texture.normal.pattern})
+        if (part->uv_mapping == on_uv)
+            put_in_front(steps, *part);
+    if (texture.under) {
+        Texture under = *texture.under;
+        put_in_front(steps, on_uv, under);
+        texture.under = std::make_shared<const Texture>(std::move(under));
+    }
+}
+
+/// Returns the stops of a map of textures or normals, whose patterns are looked at where the map's
+/// warps and turbulence move a point. The warps of a map of pigments move points as it is
+/// evaluated.
+const std::vector<MapStop>& MaterialTable::moved_stops(const Pigment& mix) {
+    const std::vector<TextureStep> steps = steps_of(mix.pattern->pattern);
+    if (steps.empty())
+        return mix.pattern->stops;
+    const auto [known, is_new] = moved_stops_.try_emplace(mix.pattern);
+    std::vector<MapStop>& stops = known->second;
+    if (!is_new)
+        return stops;
+    stops = mix.pattern->stops;
+    for (MapStop& stop : stops) {
+        if (stop.texture) {
+            Texture texture = *stop.texture;
+            put_in_front(steps, mix.uv_mapping, texture);
+            stop.texture = std::make_shared<const Texture>(std::move(texture));
+        }
+        if (stop.normal) {
+            Normal normal = *stop.normal;
+            put_in_front(steps, normal.pattern);
+            stop.normal = std::make_shared<const Normal>(std::move(normal));
+        }
+    }
+    return stops;
+}
+
 /// Makes the material a mix of those of the stops of the texture's map.
 void MaterialTable::mix(const Texture& texture, const dmat4& placed, const PlacedInterior& interior,
                         ovc::Material& material) {
-    const PatternMap& map = *texture.mix.pattern;
     const dmat4 within = placed * texture.mix.placed;
     std::vector<uint32_t> materials;
-    for (const MapStop& stop : map.stops) {
+    for (const MapStop& stop : moved_stops(texture.mix)) {
         Texture part_of_map = *stop.texture;
         if (texture.mix.uv_mapping)
             place(part_of_map, texture.mix.placed);
@@ -117,7 +167,7 @@ Bump MaterialTable::bump(const Normal& normal, const dmat4& placed) {
     if (map.stops.empty() || !map.stops.front().normal)
         return made;
     made.kind = Bump::Kind::Mix;
-    for (const MapStop& stop : map.stops) {
+    for (const MapStop& stop : moved_stops(normal.pattern)) {
         Bump part; // of no amount
         if (stop.normal && stop.normal->pattern.pattern)
             part = bump(*stop.normal, within);

@@ -56,12 +56,15 @@ private:
     void fill(const PlacedInterior& interior, ovc::Material& material);
 
     bool has_part_on_uv(const ovc::Material& material) const;
+    const std::vector<MapStop>& moved_stops(const Pigment& mix);
 
     const Look& look_;
     Scene& scene_;
     TextureTable textures_;
     std::vector<bool> on_uv_;                            // of each material
     std::unordered_multimap<size_t, uint32_t> by_color_; // numbers of materials
+    /// What moved_stops returns, of each map; it has those maps that it made.
+    std::unordered_map<PatternPtr, std::vector<MapStop>> moved_stops_;
 };
 
 } // namespace ovc::pov

@@ -16,9 +16,7 @@ static PlacedTexture placed_texture(uint32_t number, const dmat4& placed) {
     return {number, rows_of(glm::inverse(placed))};
 }
 
-/// Puts the transformation of a stop's pigment in front of its pattern: a texture's stops have no
-/// transformations of their own.
-static void put_in_front(const dmat4& placed, Pattern& pattern) {
+void put_in_front(const dmat4& placed, Pattern& pattern) {
     if (placed == dmat4(1))
         return;
     TextureStep step;

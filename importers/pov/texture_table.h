@@ -13,6 +13,10 @@ namespace ovc::pov {
 
 struct Look;
 
+/// Puts the transformation of a stop's pigment in front of its pattern: a texture's stops have no
+/// transformations of their own.
+void put_in_front(const dmat4& placed, Pattern& pattern);
+
 /// Adds textures to a scene. Equal ones are added once. Patterns must outlive it.
 class TextureTable {
 public:

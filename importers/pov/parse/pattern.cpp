@@ -204,6 +204,7 @@ bool PatternParts::take_pattern(const Token& token) {
     return true;
 }
 
+/// In povray the phase of some patterns, and of lists, counts from `frequency` on.
 void PatternParts::parse_arguments(const Token& token) {
     if (token.is("gradient")) {
         const dvec3 direction = parse_vector(reader_);
@@ -218,16 +219,17 @@ void PatternParts::parse_arguments(const Token& token) {
         parse_facets();
     else if (token.is("quilted")) {
         pattern_.parameters = {1, 1};
-        pattern_.frequency = 0; // as in povray: a phase counts from `frequency` on
+        pattern_.frequency = 0;
     } else if (token.is("ripples") || token.is("waves"))
         pattern_.parameters[0] = reader_.wave_sources;
     else if (token.is("function"))
         take_function(token, parse_function(reader_));
     else if (token.is("pigment_pattern"))
         take_pigment_pattern();
-    else if (token.is("image_pattern"))
+    else if (token.is("image_pattern")) {
+        pattern_.frequency = 0;
         take_image_pattern(token);
-    else if (token.is("slope"))
+    } else if (token.is("slope"))
         parse_slope();
     else if (token.is("density_file"))
         take_density_file(token);
@@ -249,13 +251,14 @@ void PatternParts::parse_tiling(const Token& token) {
 void PatternParts::parse_facets() {
     using P = FacetParameter;
     pattern_.parameters = {};
+    pattern_.parameters[P::kSize] = 0.1;
     pattern_.parameters[P::kMetric] = 2;
     for (;;) {
-        const bool is_coords = reader_.take("coords");
-        if (is_coords || reader_.take("size")) {
-            pattern_.parameters[P::kCoords] = pattern_.parameters[P::kSize] = 0;
-            pattern_.parameters[is_coords ? P::kCoords : P::kSize] = parse_float(reader_);
-        } else if (reader_.take("metric"))
+        if (reader_.take("coords"))
+            pattern_.parameters[P::kCoords] = parse_float(reader_);
+        else if (reader_.take("size"))
+            pattern_.parameters[P::kSize] = parse_float(reader_);
+        else if (reader_.take("metric"))
             pattern_.parameters[P::kMetric] = std::max(1e-3, parse_float(reader_));
         else
             return;
@@ -445,6 +448,7 @@ bool PatternParts::take_list(const Token& token) {
         return false;
     reader_.next();
     choose(found->second, Wave::Ramp);
+    pattern_.frequency = 0;
     pigment_.placed = dmat4(1);
     pattern_.steps.clear();
     if (found->second == Kind::Brick)
@@ -514,13 +518,7 @@ bool PatternParts::take_number(const Token& token) {
 
 /// Warps and turbulence move a picture as they do a pattern.
 void PatternParts::finish_picture() {
-    std::vector<TextureStep> steps = pattern_.steps;
-    if (pattern_.turbulence != dvec3(0)) {
-        const Octaves& octaves = pattern_.octaves;
-        steps.push_back({TextureStep::Kind::Turbulence,
-                         {dvec4(pattern_.turbulence, octaves.lambda),
-                          dvec4(octaves.omega, double(octaves.count), 0, 0), dvec4(0)}});
-    }
+    std::vector<TextureStep> steps = steps_of(pattern_);
     if (steps == pigment_.pattern->pattern.steps)
         return;
     pigment_.holes.reset(); // which do not move with it
@@ -549,7 +547,7 @@ void PatternParts::finish() {
     made->program = program_;
     made->image_map = image_;
     made->stops = stops_.empty() ? default_stops(nullptr, pattern_.kind) : stops_;
-    if (pattern_.kind != Kind::Average && !is_discrete(pattern_.kind))
+    if (pattern_.kind != Kind::Average && !has_cells(pattern_.kind))
         std::stable_sort(made->stops.begin(), made->stops.end(),
                          [](const MapStop& a, const MapStop& b) { return a.at < b.at; });
     count_parts(reader_, *made);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "core/texture/bump.h"
 #include "core/texture/pattern.h"
 #include "importers/pov/test_parse.h"
 #include "importers/readers.h"
@@ -89,6 +90,13 @@ const AskedColors kAskedColors[] = {
     {"mandel 20", {{0, 1, 1}, {0, 0, 0}}},
     {"triangular rgb x, rgb z scale 0.4", {{1, 0, 0}, {0, 0, 1}}},
     {"square rgb x, rgb z scale 0.4", {{1, 0, 0}, {0, 0, 1}}},
+    {"square rgb x rgb y rgb z rgb 1 scale <0.3, 1, 0.1> cubic_wave", {{1, 0, 0}, {0, 1, 0}}},
+    {"brick rgb x rgb z brick_size 0.4 mortar 0.1 frequency -1.39 phase 1.93",
+     {{0.07001f, 0, 0.92999f}, {0.46f, 0, 0.54f}}},
+    {"hexagon rgb x rgb y rgb z scale 0.4 frequency 0.3 phase 0.1",
+     {{0.9f, 0.1f, 0}, {0.3f, 0.7f, 0}}},
+    {"checker rgb x rgb z scale 0.4 phase 0.4", {{0, 0, 1}, {0, 0, 1}}},
+    {"triangular rgb x rgb y rgb z scale 0.4 triangle_wave", {{1, 0, 0}, {1, 0, 0}}},
     {"gradient x warp { black_hole <0, 1, 0>, 3 strength 0.5 } color_map { [0 rgb x] [1 rgb z] }",
      {{0.57747f, 0, 0.42253f}, {0.7634f, 0, 0.2366f}}},
     {"function { select(x, min(y, 0.7, z), 0, max(x, y) / 2) } color_map { [0 rgb x] [1 rgb z] }",
@@ -216,6 +224,48 @@ TEST(PovTexture, MixesTextures) {
     EXPECT_EQ(checkered.texture->at({6, 12, -6}), dvec3(1, 2, -1)) << "both scales";
 }
 
+/// Transformations, warps and turbulence, in the order in which povray applies them.
+const char* const kMoves[] = {
+    "turbulence 0.4",
+    "scale 0.5 warp { repeat 0.3*y offset 0.1*x flip y } rotate 20*z turbulence 0.2",
+    "warp { black_hole <0, 1, 0>, 3 strength 0.5 } translate 0.3 warp { turbulence 0.3 octaves 2 "
+    "}"};
+
+/// As povray draws it, and as a map of pigments does.
+TEST(PovTexture, WarpsOfAMixMoveItsTextures) {
+    const std::string part = "pigment { gradient z color_map { [0 rgb x] [1 rgb y] } scale 0.3 }";
+    for (const std::string moves : kMoves)
+        for (const char* pattern : {"planar", "average"}) {
+            const Scene of_textures =
+                textured_box("texture { " + std::string(pattern) + " texture_map { [1 " + part +
+                             " rotate 10*y] [1 " + part + "] } " + moves + " }");
+            const Scene of_pigments =
+                textured_box("pigment { " + std::string(pattern) + " pigment_map { [1 " +
+                             part.substr(9, part.size() - 11) + " rotate 10*y] [1 " +
+                             part.substr(9, part.size() - 11) + "] } " + moves + " }");
+            const auto stops_of = [](const Scene& scene, const PlacedTexture& placed) {
+                return scene.textures.at(placed.texture).stops;
+            };
+            const Material& mixed = box_material(of_textures);
+            ASSERT_TRUE(mixed.mix);
+            const PlacedTexture whole = *box_material(of_pigments).texture;
+            for (const dvec3& at : kPlaces)
+                for (size_t i = 0; i < 2; ++i) {
+                    const uint32_t stop = stops_of(of_textures, *mixed.mix).at(i).texture;
+                    const Material& material = of_textures.materials.at(stop);
+                    const vec3 found = color_at(of_textures.textures, *material.texture, at).rgb;
+                    const Pattern& outer = of_pigments.textures.at(whole.texture).pattern;
+                    const TexturePoint moved =
+                        evaluate(of_pigments.textures, outer, whole.at(at)).at;
+                    const vec3 expected =
+                        color_at(of_pigments.textures, stops_of(of_pigments, whole).at(i).texture,
+                                 moved)
+                            .rgb;
+                    EXPECT_LT(glm::length(found - expected), 1e-5f) << pattern << " " << moves;
+                }
+        }
+}
+
 /// As a plane is bright that povray 3.7.0.10 draws, lit and seen head on.
 TEST(PovFinish, AlbedosAreOfAllDirectionsTogether) {
     const Scene scene =
@@ -277,6 +327,28 @@ TEST(PovNormal, TiltsNormals) {
     EXPECT_TRUE(scene.omissions.empty());
 }
 
+/// A mix of one normal with itself is this normal, moved as povray moves it.
+TEST(PovNormal, WarpsOfAMixMoveItsNormals) {
+    const auto normal_at = [](const std::string& look, const dvec3& at) {
+        const Scene scene = textured_box("normal { " + look + " }");
+        return bumped(scene.textures, scene.bumps, *box_material(scene).bump, at, {0, 0, -1},
+                      {0, 0, 1});
+    };
+    const struct {
+        const char *of_mix, *of_one;
+    } kMixes[] = {{"turbulence 0.4", "warp { turbulence 0.4 }"},
+                  {"scale 0.5 warp { repeat 0.3*y flip y } rotate 20*z",
+                   "scale 0.5 warp { repeat 0.3*y flip y } rotate 20*z"}};
+    for (const auto& mix : kMixes)
+        for (const std::string pattern : {"planar", "average"})
+            for (const dvec3& at : kPlaces) {
+                const dvec3 mixed = normal_at(
+                    pattern + " normal_map { [1 bumps 0.6] [1 bumps 0.6] } " + mix.of_mix, at);
+                const dvec3 one = normal_at(std::string("bumps 0.6 ") + mix.of_one, at);
+                EXPECT_LT(glm::length(mixed - one), 1e-9) << pattern << " " << mix.of_mix;
+            }
+}
+
 TEST(PovNormal, LeavesOutTextureCoordinatesWithAWarning) {
     for (const char* look :
          {"normal { uv_mapping bumps 1 }", "normal { bumps 1 uv_mapping }",
@@ -301,6 +373,10 @@ TEST(PovNormal, HasFacets) {
     EXPECT_EQ(pattern.parameters[FacetParameter::kMetric], 3);
     EXPECT_TRUE(scene.omissions.empty());
     EXPECT_FALSE(parsed_scene("box { 0, 1 pigment { facets size 1 } }"));
+    const Scene noisy = textured_box("normal { facets coords 0.4 size 0.3 }");
+    const Pattern& in_space = noisy.textures.at(box_material(noisy).bump->pattern.texture).pattern;
+    EXPECT_EQ(in_space.parameters[FacetParameter::kCoords], 0.4);
+    EXPECT_EQ(in_space.parameters[FacetParameter::kSize], 0.3);
 }
 
 TEST(PovTexture, FinishesHaveFilms) {
