@@ -120,7 +120,7 @@ Branches finish_branches(const SurfacePoint& surface, bool total) {
     if (surface.coats.empty())
         parts.mirror = reflected_share(surface);
     for (const Coat& coat : surface.coats)
-        parts.mirror += coat.weight * reflected_share(coat.surface);
+        parts.mirror += coat.share * reflected_share(coat.surface);
     if (surface.material->finish->conserve_energy)
         parts.through *= glm::clamp(vec3(1) - parts.mirror, vec3(0), vec3(1));
     return parts;

@@ -2,8 +2,11 @@
 // POV-Ray's finish, term by term, on one triangle; tests/povray_test.cpp has POV-Ray judge them.
 #include "host/shade/finish.h"
 
+#include "core/texture/pattern.h"
+
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -150,6 +153,21 @@ TEST(Finish, PartsAreAddedUnlessEnergyIsConserved) {
     expect_near(branches(SeenTriangle(finish, 1.5, 0.5f).point, false).through, vec3(0.3f));
 }
 
+/// As povray 3.7.0.10: a coat over a mirror filters the paint below it, not what it mirrors.
+TEST(Finish, CoatsDoNotDimTheMirrorBelow) {
+    SeenTriangle seen({}, 1, 0.5f);
+    Scene& scene = seen.scene;
+    Material mirror{"mirror"};
+    mirror.finish = Finish{};
+    mirror.finish->reflection = mirror.finish->grazing_reflection = vec3(0.4f);
+    scene.materials.push_back(mirror);
+    scene.materials[0].under = 1;
+    const SurfacePoint point = surface_point(scene, {{-1, 1, 0}, 0, {1, -1, 0}}, kHit);
+    ASSERT_EQ(point.coats.size(), 2u);
+    EXPECT_LT(max_component(point.coats[1].weight), 0.6f);
+    expect_near(branches(point, false).mirror, vec3(0.4f));
+}
+
 TEST(Finish, TotalReflectionLosesNoLight) {
     // As povray 3.7.0.10: through two faces that let 0.9 through, and a third that reflects
     // totally, comes 0.81 of the sky; it is the same for reflection 0.3, with and without
@@ -162,6 +180,22 @@ TEST(Finish, TotalReflectionLosesNoLight) {
         EXPECT_EQ(total.mirror, vec3(1));
         EXPECT_EQ(total.through, vec3(0));
     }
+}
+
+/// As povray 3.7.0.10 draws `slope` and `aoi` together with a normal.
+TEST(Finish, SlopesAreThoseOfTiltedNormals) {
+    Scene scene = SeenTriangle({}).scene;
+    const std::array<dvec4, 3> unmoved{dvec4(1, 0, 0, 0), dvec4(0, 1, 0, 0), dvec4(0, 0, 1, 0)};
+    scene.textures = {{{.kind = Pattern::Kind::AngleOfIncidence}, {{0, {vec3(0)}}, {1, {vec3(1)}}}},
+                      {{.kind = Pattern::Kind::Bozo}, {{}}}};
+    scene.materials[0].texture = PlacedTexture{0, unmoved};
+    const auto seen = [&] { return surface_point(scene, {{-1, 1, 0}, 0, {1, -1, 0}}, kHit); };
+    const float flat = seen().color.x;
+    scene.materials[0].bump = Bump{.kind = Bump::Kind::Noise, .amount = 2, .pattern = {1, unmoved}};
+    const SurfacePoint tilted = seen();
+    const TexturePoint there{tilted.position, tilted.normal, {1, -1, 0}};
+    EXPECT_NEAR(tilted.color.x, color_at(scene.textures, 0, there).rgb.x, 1e-5);
+    EXPECT_GT(std::abs(tilted.color.x - flat), 0.01f);
 }
 
 TEST(Checker, TakesTurnsCubeByCube) {

@@ -52,6 +52,8 @@ Optics optics_at(const SurfacePoint& surface);
 struct Coat {
     SurfacePoint surface; // without coats
     vec3 weight;
+    /// Its share in mixes alone. As in POV-Ray, what lies over a mirror does not dim it.
+    float share = 1;
 };
 
 /// Returns whether some texture or normal map is seen as a mean over the cones of rays.

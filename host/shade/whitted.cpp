@@ -349,8 +349,7 @@ Containers Whitted::inside_behind(const Path& path, const Met& met, bool goes_th
 /// color keeps the weight of a ray that is not followed.
 void Whitted::follow(const Ray& ray, const Path& path, const Hit& hit, Met& met,
                      Spawned& spawned) const {
-    const vec3 arriving = path.weight * share_kept(ray, met.surface);
-    met.weight = arriving;
+    met.weight = path.weight;
     if (path.depth >= options_.max_depth || !sends_rays_on(met.surface))
         return;
     const Cone cone{path.cone.width_at(ray, hit.t), path.cone.spread};
@@ -367,11 +366,13 @@ void Whitted::follow(const Ray& ray, const Path& path, const Hit& hit, Met& met,
     const std::optional<Ray> refracted = clear ? refracted_ray(ray, met.surface) : std::nullopt;
     const bool total = clear && !refracted;
     const Branches parts = branches(met.surface, total);
+    // As in povray, a solid absorbs what comes through its surface, not the surface's own light.
+    const vec3 kept = share_kept(ray, met.surface);
     const auto spawn = [&](const vec3& share, float taken, RayKind kind, int deeper, auto&& child) {
-        const vec3 weight = arriving * share;
+        const vec3 weight = path.weight * share;
         if (max_component(glm::abs(weight)) < kMinWeight)
             return;
-        met.weight -= arriving * taken;
+        met.weight -= path.weight * taken;
         const bool reflected = path.reflected || kind == RayKind::Reflection;
         Solids within = kind == RayKind::Reflection ? path.within : around;
         if (kind == RayKind::Refraction && met.surface.entering &&
@@ -382,11 +383,11 @@ void Whitted::follow(const Ray& ray, const Path& path, const Hit& hit, Met& met,
                             /* scattered= */ false, weight, path.density, path.behind, cone,
                             inside_behind(path, met, kind == RayKind::Refraction), within});
     };
-    spawn(parts.mirror, parts.taken_by_mirror, RayKind::Reflection, 1,
+    spawn(total ? kept * parts.mirror : parts.mirror, parts.taken_by_mirror, RayKind::Reflection, 1,
           [&] { return mirror_ray(ray, met.surface); });
     // A ray that goes straight on is no step deeper, as in POV-Ray: a line has only so many
     // surfaces.
-    spawn(parts.through, parts.taken_by_through, RayKind::Refraction,
+    spawn(kept * parts.through, parts.taken_by_through, RayKind::Refraction,
           met.surface.material->ior == met.surface.ior_around ? 0 : 1, [&] { return *refracted; });
 }
 

@@ -291,6 +291,25 @@ TEST(Whitted, TotalReflectionKeepsAllTheLight) {
     EXPECT_EQ(pixel.r, 0);
 }
 
+/// As povray 3.7.0.10: what is behind a box that absorbs is dim, its inner side's own light is not.
+TEST(Whitted, SolidsAbsorbWhatComesThroughThem) {
+    Scene scene;
+    Material tinted;
+    tinted.transmission = 1;
+    tinted.absorption = Absorption{.distance = 2, .power = 1000, .color = vec3(0.5f)};
+    tinted.finish = Finish{};
+    tinted.finish->diffuse = 0;
+    tinted.finish->ambient = vec3(0.1f);
+    tinted.color = vec3(1);
+    add_box(scene, tinted, {-1, -1, -1}, {1, 1, 1});
+    scene.may_add_light = false;
+    scene.background = {vec3(0.5f), vec3(0.5f)};
+    Camera camera;
+    camera.eye = {0, 0, 9};
+    camera.fov_degrees = 0.01;
+    EXPECT_NEAR(render(scene, camera).pixels[0].r, 0.1 + 0.1 + 0.5 * std::exp(-0.5), 1e-4);
+}
+
 /// Returns the red of a pixel behind a clear box that the media fill, 2 long along the view.
 static float seen_through(const std::vector<Medium>& media, bool lamp) {
     Scene scene;

@@ -64,7 +64,10 @@ static void take_color(const Scene& scene, const Material& material, const Textu
     surface.color = material.color;
     if (material.texture) {
         const PlacedTexture& placed = *material.texture;
-        const TransparentColor color = color_at(scene.textures, placed, point);
+        TexturePoint tilted = point;
+        if (material.bump) // POV-Ray's slopes and angles of incidence are those of tilted normals
+            tilted.normal = surface.normal;
+        const TransparentColor color = color_at(scene.textures, placed, tilted);
         // A picture that is scaled or inverted may say that more light is sent on than arrives.
         surface.color = material.optics ? glm::clamp(color.rgb, vec3(0), vec3(1)) : color.rgb;
         if (material.finish) {
@@ -79,34 +82,38 @@ static void take_color(const Scene& scene, const Material& material, const Textu
 }
 
 static vec3 add_mix(const Scene& scene, const PlacedTexture& placed, const TexturePoint& point,
-                    const vec3& weight, const SurfacePoint& bare, std::vector<Coat>& coats);
+                    const vec3& weight, float share_of_mixes, const SurfacePoint& bare,
+                    std::vector<Coat>& coats);
 
 /// Adds the coats of a material, seen with this weight, and returns the share of light that goes
 /// through all of them.
 static vec3 add_coats(const Scene& scene, uint32_t number, const TexturePoint& point,
-                      const vec3& weight, const SurfacePoint& bare, std::vector<Coat>& coats) {
+                      const vec3& weight, float share_of_mixes, const SurfacePoint& bare,
+                      std::vector<Coat>& coats) {
     const Material& material = scene.materials[number];
     vec3 through;
     if (material.mix)
-        through = add_mix(scene, *material.mix, point, weight, bare, coats);
+        through = add_mix(scene, *material.mix, point, weight, share_of_mixes, bare, coats);
     else {
-        Coat& coat = coats.emplace_back(Coat{bare, weight});
+        Coat& coat = coats.emplace_back(Coat{bare, weight, share_of_mixes});
         take_color(scene, material, point, coat.surface);
         through = coat.surface.through;
     }
     if (material.under == kNone || max_component(weight * through) < kMinCoat)
         return through;
-    return through * add_coats(scene, material.under, point, weight * through, bare, coats);
+    return through *
+           add_coats(scene, material.under, point, weight * through, share_of_mixes, bare, coats);
 }
 
 static vec3 add_mix(const Scene& scene, const PlacedTexture& placed, const TexturePoint& point,
-                    const vec3& weight, const SurfacePoint& bare, std::vector<Coat>& coats) {
+                    const vec3& weight, float share_of_mixes, const SurfacePoint& bare,
+                    std::vector<Coat>& coats) {
     const Texture& mix = scene.textures[placed.texture];
     vec3 through(0);
     const auto add_stop = [&](const TextureStop& stop, double share) {
         if (share > 0)
-            through += float(share) *
-                       add_coats(scene, stop.texture, point, float(share) * weight, bare, coats);
+            through += float(share) * add_coats(scene, stop.texture, point, float(share) * weight,
+                                                float(share) * share_of_mixes, bare, coats);
     };
     if (mix.pattern.kind == Pattern::Kind::Average) {
         for_each_averaged(mix.stops, add_stop);
@@ -135,7 +142,7 @@ void take_material(const Scene& scene, uint32_t material, const TexturePoint& po
     std::vector<Coat> coats;
     const SurfacePoint bare = surface;
     take_color(scene, own, point, surface);
-    surface.through = add_coats(scene, material, point, vec3(1), bare, coats);
+    surface.through = add_coats(scene, material, point, vec3(1), 1, bare, coats);
     surface.color = vec3(0);
     for (const Coat& coat : coats)
         surface.color += coat.weight * coat.surface.opacity * coat.surface.color;
