@@ -198,6 +198,23 @@ TEST(PovShapes, ClippedOnesAreOpen) {
         0.01);
 }
 
+/// As povray 3.7.0.10 lights them.
+TEST(PovShapes, TrianglesWithOneNormalAreFlat) {
+    for (const bool differ : {false, true}) {
+        const std::string last = differ ? "y + x/9" : "2*y";
+        for (const std::string& mesh :
+             {"mesh { smooth_triangle { 0, y, x, y, y, " + last + " } }",
+              "mesh2 { vertex_vectors { 3, 0, x, y } normal_vectors { 3, y, y, " + last +
+                  " } face_indices { 1, <0, 1, 2> } }"}) {
+            const Result<Scene> scene = parsed_scene(mesh);
+            ASSERT_TRUE(scene) << scene.error().message;
+            const std::vector<vec3>& normals = scene->meshes.at(0).normals;
+            const bool is_flat = normals.empty() || std::abs(normals[0].z) > 0.9f;
+            EXPECT_EQ(is_flat, !differ) << mesh;
+        }
+    }
+}
+
 TEST(PovShapes, PartsOfSolidsKeepTheirLook) {
     const Result<Scene> scene =
         parsed_scene("difference { sphere { 0, 1 pigment { color rgb x } } box { 0, 2 } "

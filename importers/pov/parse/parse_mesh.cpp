@@ -65,9 +65,20 @@ private:
 
 using TriangleUv = std::array<vec2, 3>;
 
+/// Returns whether povray draws a mesh's triangle with these normals as a flat one: they are equal.
+bool is_flat(const Corner (&c)[3]) {
+    const dvec3 first = glm::normalize(c[0].normal);
+    const auto is_same = [&](const dvec3& normal) {
+        const dvec3 off = glm::normalize(normal) - first;
+        return glm::dot(off, off) <= 1e-10;
+    };
+    return is_same(c[1].normal) && is_same(c[2].normal);
+}
+
 void add_triangle(const Corner (&c)[3], bool smooth, const TriangleUv& uv, Facets& facets) {
-    const bool added = smooth ? facets.add(c[0], c[1], c[2])
-                              : facets.add(c[0].position, c[1].position, c[2].position);
+    const bool added = smooth && !is_flat(c)
+                           ? facets.add(c[0], c[1], c[2])
+                           : facets.add(c[0].position, c[1].position, c[2].position);
     // Coordinates are kept from the first that is not 0 on.
     const bool is_zero = uv[0] == vec2(0) && uv[1] == vec2(0) && uv[2] == vec2(0);
     if (!added || (is_zero && facets.uv.empty()))
@@ -256,6 +267,13 @@ void parse_more_indices(Reader& reader, std::string_view what,
     reader.expect('}', what);
 }
 
+/// Reads normals, of which those of no length are as in povray.
+std::vector<dvec3> parse_normals(Reader& reader) {
+    std::vector<dvec3> normals = parse_vectors(reader, "normal_vectors");
+    std::replace(normals.begin(), normals.end(), dvec3(0), dvec3(1, 0, 0));
+    return normals;
+}
+
 std::vector<vec2> parse_uv_vectors(Reader& reader) {
     reader.expect('{', "uv_vectors");
     const int count = parse_count(reader, 0);
@@ -317,7 +335,7 @@ void parse_mesh2(Reader& reader, Object& object) {
         if (reader.take("vertex_vectors"))
             mesh.vertices = parse_vectors(reader, "vertex_vectors");
         else if (reader.take("normal_vectors"))
-            mesh.normals = parse_vectors(reader, "normal_vectors");
+            mesh.normals = parse_normals(reader);
         else if (reader.take("uv_vectors"))
             mesh.uv = parse_uv_vectors(reader);
         else if (reader.take("uv_indices"))

@@ -10,9 +10,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <charconv>
 #include <cmath>
+#include <ctime>
 #include <numbers>
 #include <unordered_map>
 
@@ -368,6 +370,30 @@ std::string changed(Reader& reader) {
     return text;
 }
 
+/// Reads days since the year 2000, perhaps with a format of strftime, and returns their date at
+/// Greenwich.
+std::string datetime(Reader& reader) {
+    constexpr double kMaxDays = 1e9; // for which a year is an int
+    constexpr std::time_t kYear2000 = 946684800;
+    reader.expect('(', "datetime");
+    const double days = parse_float(reader);
+    const std::string format =
+        reader.take(',') ? parse_text(reader) : std::string("%Y-%m-%d %H:%M:%SZ");
+    const Place place = reader.place();
+    reader.expect(')', "datetime");
+    if (!(std::abs(days) <= kMaxDays))
+        reader.fail(place, fmt::format("found a date {} days after the year 2000", days));
+    const std::time_t seconds = kYear2000 + std::time_t(std::floor(86400 * days + 0.5));
+    std::tm parts{};
+    std::array<char, 1024> text{};
+    gmtime_r(&seconds, &parts);
+    // The point in front tells a date without letters from one that is too long.
+    const size_t length = std::strftime(text.data(), text.size(), ("." + format).c_str(), &parts);
+    if (length == 0)
+        reader.fail(place, fmt::format("found a date of more than {} letters", text.size() - 2));
+    return {text.data() + 1, length - 1};
+}
+
 const std::unordered_map<std::string_view, TextFunction> kTextFunctions = {
     {"str", str},
     {"vstr", vstr},
@@ -382,14 +408,7 @@ const std::unordered_map<std::string_view, TextFunction> kTextFunctions = {
          r.expect(')', "chr");
          return std::string(1, code < 256 ? char(code) : '?');
      }},
-    {"datetime", [](Reader& r) {
-         r.expect('(', "datetime");
-         parse_float(r);
-         if (r.take(','))
-             parse_text(r);
-         r.expect(')', "datetime");
-         return std::string("1970-01-01 00:00:00Z");
-     }}};
+    {"datetime", datetime}};
 
 } // namespace
 

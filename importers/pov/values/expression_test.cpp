@@ -41,6 +41,8 @@ TEST(PovExpression, KnowsTheFunctions) {
     EXPECT_VALUE(3, "int(3.7)");
     EXPECT_VALUE(12, "strlen(concat(\"a\", str(1.5, 8, 3), chr(65), \"\\\"z\"))");
     EXPECT_VALUE(2.5, "val(substr(\"x2.5y\", 2, 3))");
+    EXPECT_VALUE(2001, "val(datetime(366.5, \"%Y\"))");
+    EXPECT_VALUE(12, "val(substr(datetime(366.5), 12, 2))");
     EXPECT_VALUE(
         2014,
         "val(\"1e3x\") + val(\" +12 \") + val(\"1e\") + val(\"1,5\") + val(\"1e3\") + val(\"x1\")");
