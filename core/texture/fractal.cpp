@@ -88,10 +88,10 @@ double part_of_last(const Complex& z, int kind) {
 double inside(const std::array<double, 10>& p, const Orbit& orbit) {
     using P = FractalParameter;
     const int kind = int(p[P::kInterior]);
-    const double value = kind == 1   ? std::sqrt(orbit.nearest)
-                         : kind == 6 ? square(orbit.last)
-                                     : part_of_last(orbit.last, kind);
-    return value * p[P::kInteriorFactor];
+    const double factor = p[P::kInteriorFactor];
+    if (kind == 6) // povray multiplies the second square alone
+        return part_of_last(orbit.last, 4) + factor * part_of_last(orbit.last, 5);
+    return factor * (kind == 1 ? std::sqrt(orbit.nearest) : part_of_last(orbit.last, kind));
 }
 
 double outside(const std::array<double, 10>& p, const Orbit& orbit) {

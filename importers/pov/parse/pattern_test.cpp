@@ -87,6 +87,8 @@ const AskedColors kAskedColors[] = {
      {{0.19761f, 0, 0.80239f}, {0.33783f, 0, 0.66217f}}},
     {"julia <0.353, 0.288>, 20 interior 1, 1 scale 2 color_map { [0 rgb x] [1 rgb z] }",
      {{0.60805f, 0, 0.39195f}, {0.95f, 0, 0.05f}}},
+    {"mandel 22 interior 6, 1.78 scale 4 color_map { [0 rgb x] [1 rgb z] }",
+     {{0.92998f, 0, 0.07002f}, {0.94457f, 0, 0.05543f}}},
     {"mandel 20", {{0, 1, 1}, {0, 0, 0}}},
     {"triangular rgb x, rgb z scale 0.4", {{1, 0, 0}, {0, 0, 1}}},
     {"square rgb x, rgb z scale 0.4", {{1, 0, 0}, {0, 0, 1}}},
