@@ -151,8 +151,10 @@ bool begins_number(Reader& reader, const ValueHandle& handle) {
     const Value* value = reader.value_of(handle);
     if (!value)
         return false;
-    if (const auto* array = std::get_if<Array>(value))
-        return indices && !array->items.empty() && std::holds_alternative<Number>(array->items[0]);
+    if (const auto* array = std::get_if<Array>(value)) {
+        const Value* item = first_item(*array);
+        return indices && item && std::holds_alternative<Number>(*item);
+    }
     return arguments &&
            (std::holds_alternative<Function>(*value) || std::holds_alternative<Spline>(*value));
 }

@@ -457,8 +457,10 @@ bool starts_number(const Reader& reader, const Token& token) {
     case TokenKind::Sign:
         return token.is('<') || token.is('(') || token.is('-') || token.is('+') || token.is('!');
     case TokenKind::Name:
-        if (const auto* array = named<Array>(reader, token))
-            return !array->items.empty() && std::holds_alternative<Number>(array->items[0]);
+        if (const auto* array = named<Array>(reader, token)) {
+            const Value* item = first_item(*array);
+            return item && std::holds_alternative<Number>(*item);
+        }
         return starts_color(token) || find_builtin(token.name->text) ||
                named<Number>(reader, token) || named<Function>(reader, token) ||
                named<Spline>(reader, token);
@@ -482,6 +484,13 @@ ValueHandle parse_item(Reader& reader, Slot& slot) {
     }
     handle.item = index;
     return handle;
+}
+
+const Value* first_item(const Array& array) {
+    const auto first = std::find_if(array.items.begin(), array.items.end(), [](const Value& item) {
+        return !std::holds_alternative<std::monostate>(item);
+    });
+    return first == array.items.end() ? nullptr : &*first;
 }
 
 Value& take_item(Reader& reader, const Token& name) {

@@ -41,6 +41,9 @@ ValueHandle parse_item(Reader& reader, Slot& slot);
 /// item. The reference is valid until the variable changes.
 Value& take_item(Reader& reader, const Token& name);
 
+/// Returns the first item of the array that has a value, which tells the kind of them all, or null.
+const Value* first_item(const Array& array);
+
 /// Returns the number with `size` components, which is 1 to 5. Throws ParseError where it has more.
 Number resized(Reader& reader, const Number& number, int size);
 Color color_of(const Number& number);
@@ -75,13 +78,15 @@ std::optional<T> take_named(Reader& reader) {
     return std::nullopt;
 }
 
-/// Does the same, but an array whose first item is of another kind is no error; nothing is taken.
+/// Does the same, but an array of items of another kind is no error; nothing is taken.
 template <class T>
 std::optional<T> take_named_if(Reader& reader) {
     const Token token = reader.peek();
-    if (const auto* array = named<Array>(reader, token))
-        if (array->items.empty() || !std::holds_alternative<T>(array->items[0]))
+    if (const auto* array = named<Array>(reader, token)) {
+        const Value* item = first_item(*array);
+        if (!item || !std::holds_alternative<T>(*item))
             return std::nullopt;
+    }
     return take_named<T>(reader);
 }
 

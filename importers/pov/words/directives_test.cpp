@@ -52,7 +52,26 @@ TEST(PovDirectives, LoopsAndConditionsNest) {
                  "#ifdef (Nothing) #declare V = 1; #elseif (0) #error \"no\" #else #declare V = 2; "
                  "#end");
     EXPECT_VALUE(7, "A[1][0]", "#declare A = array[2][2]; #declare A[1][0] = 7;");
+    EXPECT_VALUE(14, "A[1] * 2", "#declare A = array[2]; #declare A[1] = 7;");
     EXPECT_VALUE(4, "dimension_size(A, 1)", "#declare A = array[4] { 1, 2, 3, 4 }");
+}
+
+/// povray takes any item that has a value, whether the first one has or not.
+TEST(PovDirectives, ItemsMayComeBeforeTheFirst) {
+    const std::pair<const char*, const char*> kUses[] = {
+        {"sphere { 0, 1 }", "object { A[1] }"},
+        {"texture { pigment { rgb x } }", "sphere { 0, 1 texture { A[1] } }"},
+        {"pigment { rgb x }", "sphere { 0, 1 pigment { A[1] } }"},
+        {"finish { ambient 1 }", "sphere { 0, 1 finish { A[1] } }"},
+        {"normal { bumps }", "sphere { 0, 1 normal { A[1] } }"},
+        {"interior { ior 1.5 }", "sphere { 0, 1 interior { A[1] } }"},
+        {"color_map { [0 rgb 1] [1 rgb x] }",
+         "sphere { 0, 1 pigment { bozo color_map { A[1] } } }"}};
+    for (const auto& [item, use] : kUses) {
+        const Result<Scene> scene = parsed_scene(
+            "#declare A = array[2]; #declare A[1] = " + std::string(item) + "; " + use);
+        EXPECT_TRUE(scene) << item << ": " << scene.error().message;
+    }
 }
 
 TEST(PovDirectives, FilesAreReadAndWhatIsWrittenIsReadAgain) {
