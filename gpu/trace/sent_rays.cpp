@@ -155,9 +155,10 @@ size_t SentRays::put(size_t at, const RayStates& states, uint32_t which) {
 void SentRays::close_holes(size_t block_rays, std::span<const size_t> counts) {
     std::vector<size_t> places(counts.size());
     std::exclusive_scan(counts.begin(), counts.end(), places.begin(), size_t(0));
+    constexpr size_t kBlocksPerTask = 32;
     const auto close = [&](auto& all, auto& copy) {
         copy.resize(std::max(copy.size(), all.size()));
-        parallel_for(counts.size(), 256, [&](size_t first, size_t last) {
+        parallel_for(counts.size(), kBlocksPerTask, [&](size_t first, size_t last) {
             for (size_t b = first; b < last; ++b)
                 std::copy_n(all.begin() + ptrdiff_t(b * block_rays), counts[b],
                             copy.begin() + ptrdiff_t(places[b]));

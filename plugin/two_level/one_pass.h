@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // OnePass: answers a query where all pages are resident, so that one pass of the kernel answers a
 // ray. While one part of the rays is with the kernel and the next one waits for it, the part before
-// is resolved and the one behind is made ready, so that the kernel never waits for the host.
+// is resolved and the one behind is made ready, so that the kernel never waits for the host. Nor
+// does the host wait for the first part before three are on their way.
 #pragma once
 
 #include "plugin/resolve/resolve.h"
@@ -43,8 +44,8 @@ public:
             passes_.begin_pass(next, {});
             ++begun;
         };
-        begin_next();
-        begin_next();
+        for (size_t i = 0; i < batches.size(); ++i)
+            begin_next();
         size_t traced = 0;
         while (finished < begun) {
             if (Result<Done> asked = watch_.go_on(rays_before_ + traced, rays_of_call_); !asked)
@@ -52,9 +53,9 @@ public:
             Batch& done = batches[finished++ % batches.size()];
             if (const Result<Done> passed = passes_.finish_pass(done); !passed)
                 return passed;
-            begin_next();
             resolve(done);
             traced = size_t(done.rays.back()) + 1;
+            begin_next();
         }
         return Done{};
     }
