@@ -207,8 +207,9 @@ void for_each_coincidence(uint64_t seeds, size_t min_hits, Check&& check) {
             std::erase_if(triangles, [](const Triangle& triangle) {
                 return triangle_fault(triangle) != TriangleFault::None;
             });
-            if (ray.valid())
+            if (ray.valid()) {
                 ASSERT_NO_FATAL_FAILURE(check(triangles, ray, hits));
+            }
         }
         EXPECT_GT(hits, min_hits);
     }
