@@ -196,23 +196,49 @@ TEST(Importer, DamagedCompressionIsSaid) {
                   ": the compressed data is damaged: incorrect checksum");
 }
 
-/// Returns a zip archive of one file that is not compressed.
-std::string zip_of(const std::string& name, const std::string& contents) {
+/// Returns a zip archive of files, by name and contents, that are not compressed.
+std::string zip_of(const std::vector<std::pair<std::string, std::string>>& files) {
     const auto number = [](uLong n, int bytes) {
         std::string digits;
         for (int i = 0; i < bytes; ++i)
             digits += char(n >> (8 * i));
         return digits;
     };
-    const uLong sum =
-        crc32(0, reinterpret_cast<const Bytef*>(contents.data()), uInt(contents.size()));
-    const std::string about = number(10, 2) + number(0, 8) + number(sum, 4) +
-                              number(contents.size(), 4) + number(contents.size(), 4) +
-                              number(name.size(), 2);
-    const std::string file = "PK\3\4" + about + number(0, 2) + name + contents;
-    const std::string entry = "PK\1\2" + number(10, 2) + about + number(0, 16) + name;
-    return file + entry + "PK\5\6" + number(0, 4) + number(1, 2) + number(1, 2) +
-           number(entry.size(), 4) + number(file.size(), 4) + number(0, 2);
+    std::string all, entries;
+    for (const auto& [name, contents] : files) {
+        const uLong sum =
+            crc32(0, reinterpret_cast<const Bytef*>(contents.data()), uInt(contents.size()));
+        const std::string about = number(10, 2) + number(0, 8) + number(sum, 4) +
+                                  number(contents.size(), 4) + number(contents.size(), 4) +
+                                  number(name.size(), 2);
+        entries += "PK\1\2" + number(10, 2) + about + number(0, 12) + number(all.size(), 4) + name;
+        all += "PK\3\4" + about + number(0, 2) + name + contents;
+    }
+    return all + entries + "PK\5\6" + number(0, 4) + number(files.size(), 2) +
+           number(files.size(), 2) + number(entries.size(), 4) + number(all.size(), 4) +
+           number(0, 2);
+}
+
+/// Returns a 3MF file of one triangle, with a thumbnail.
+std::string small_3mf() {
+    const std::string relation =
+        "<Relationship Id=\"r\" Target=\"/3D/3dmodel.model\" Type=\"http://"
+        "schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/>";
+    const std::string mesh =
+        "<mesh><vertices><vertex x=\"0\" y=\"0\" z=\"0\"/><vertex x=\"1\" y=\"0\" z=\"0\"/>"
+        "<vertex x=\"0\" y=\"1\" z=\"0\"/></vertices>"
+        "<triangles><triangle v1=\"0\" v2=\"1\" v3=\"2\"/></triangles></mesh>";
+    return zip_of({{"_rels/.rels", "<Relationships>" + relation + "</Relationships>"},
+                   {"3D/3dmodel.model",
+                    "<model><resources><object id=\"1\">" + mesh +
+                        "</object></resources><build><item objectid=\"1\"/></build></model>"},
+                   {"Metadata/thumbnail.png", std::string(1000, 'x')}});
+}
+
+TEST(Importer, ReadsA3mfFileWithAThumbnail) {
+    const TestFolder folder;
+    folder.write("a.3mf", small_3mf());
+    EXPECT_EQ(folder.failure("a.3mf"), "1 triangles");
 }
 
 TEST(Importer, AssimpsFormatsSurviveDamage) {
@@ -227,7 +253,7 @@ TEST(Importer, AssimpsFormatsSurviveDamage) {
     const char* const part = "<Relationships><Relationship Id=\"r\" Target=\"/3D/none.model\" Type="
                              "\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/>"
                              "</Relationships>";
-    folder.write("no part.3mf", zip_of("_rels/.rels", part));
+    folder.write("no part.3mf", zip_of({{"_rels/.rels", part}}));
     EXPECT_TRUE(folder.failure("no part.3mf").starts_with("no part.3mf: Assimp found: "))
         << folder.failure("no part.3mf");
     for (const char* name : {"rubbish.stl", "rubbish.glb"}) {

@@ -13,7 +13,9 @@
 #include <assimp/DefaultIOSystem.h>
 #include <assimp/Importer.hpp>
 #include <assimp/MemoryIOWrapper.h>
+#include <assimp/importerdesc.h>
 #include <assimp/scene.h>
+#include <assimp/version.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -21,6 +23,8 @@
 #include <exception>
 #include <numbers>
 #include <stdexcept>
+#include <string_view>
+#include <utility>
 
 namespace Assimp {
 
@@ -198,6 +202,20 @@ const aiScene* read(Assimp::Importer& importer, NotingFiles& files, const GltfFi
     return importer.ReadFile(name.string(), 0);
 }
 
+/// Takes the pictures in a 3MF file, such as its thumbnail, out of what was read; none is shown.
+/// Assimp 5.2.5 to 5.3.1 has deleted them before it returns, and would again.
+void drop_deleted_pictures(const Assimp::Importer& importer, const aiScene* found) {
+    const int number = importer.GetPropertyInteger("importerIndex", -1);
+    const aiImporterDesc* const reader =
+        number < 0 ? nullptr : importer.GetImporterInfo(size_t(number));
+    const bool deletes = aiGetVersionMajor() == 5 && aiGetVersionMinor() < 4;
+    if (!found || !deletes || !reader || std::string_view(reader->mFileExtensions) != "3mf")
+        return;
+    auto* const scene = const_cast<aiScene*>(found);
+    delete[] std::exchange(scene->mTextures, nullptr);
+    scene->mNumTextures = 0;
+}
+
 } // namespace
 
 bool assimp_reads(std::string_view extension) {
@@ -222,6 +240,7 @@ Result<Scene> read_assimp(const std::filesystem::path& path, const ImportOptions
     } else {
         found = read(importer, *source, path);
     }
+    drop_deleted_pictures(importer, found);
     Scene scene;
     scene.name = path.stem().string();
     std::vector<std::string> left_out;
