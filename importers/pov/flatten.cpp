@@ -134,7 +134,7 @@ template <class Use>
 void for_each_placed(const Facets& facets, const Placed& p, Use use) {
     assert(facets.corners.size() % 3 == 0);
     const dmat3 turned = glm::transpose(glm::inverse(dmat3(p.placed)));
-    const bool mirrored = (glm::determinant(dmat3(p.placed)) < 0) != p.inverse;
+    const bool mirrored = ((glm::determinant(dmat3(p.placed)) < 0) != p.inverse) != p.clockwise;
     const double outward = p.inverse ? -1 : 1;
     const size_t order[3] = {0, mirrored ? size_t(2) : 1, mirrored ? size_t(1) : 2};
     for (size_t t = 0; t + 2 < facets.corners.size(); t += 3) {

@@ -123,6 +123,13 @@ void add_light(const LightSource& source, const dmat4& placed, uint32_t group, S
         }
 }
 
+/// Whether the object's interior would lie on the wrong side of its triangles. In povray each
+/// surface that a ray meets leads into an interior or out of it, whichever way triangles run; the
+/// texture of inner sides goes by that.
+bool fills_wrong_side(const Object& object, const Inherited& from) {
+    return object.faces_inside && from.interior.interior && !from.inside;
+}
+
 } // namespace
 
 void Gatherer::gather(const Object& object, Inherited from) {
@@ -135,7 +142,7 @@ void Gatherer::gather(const Object& object, Inherited from) {
         add_light(*light, from.placed, from.lit_by.group, scene_);
     else if (!std::holds_alternative<std::monostate>(object.shape) && is_wanted(from.seen_by))
         placed.push_back({&object, from.placed, from.inverse, cover_of(object, from), from.seen_by,
-                          from.lit_by});
+                          from.lit_by, fills_wrong_side(object, from)});
     for (const ObjectPtr& child : object.children)
         gather(*child, from);
 }

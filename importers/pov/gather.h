@@ -19,6 +19,7 @@ struct Placed {
     Cover cover;
     uint32_t seen_by;
     LitBy lit_by;
+    bool clockwise = false; // triangles run that way seen from outside
 };
 
 /// The state that an object inherits from its parents.

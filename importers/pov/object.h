@@ -93,7 +93,8 @@ struct Object {
     bool hollow = false;            // media may fill it
     bool double_illuminate = false; // light that arrives at a far side lights the near one, too
     bool open = false;
-    bool has_inside = true; // false for a sheet, which cannot take anything away from a solid
+    bool faces_inside = false; // a mesh whose triangles run clockwise seen from outside
+    bool has_inside = true;    // false for a sheet, which cannot take anything away from a solid
 };
 
 } // namespace ovc::pov

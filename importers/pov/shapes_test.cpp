@@ -31,6 +31,11 @@ const Solid kSolids[] = {
     {"torus", "torus { 3, 1 }", 2 * pi* pi * 3},
     {"superellipsoid", "superellipsoid { <1, 1> }", 4 / 3.0 * pi},
     {"lathe", "lathe { linear_spline 4, <0, 0>, <1, 0>, <1, 2>, <0, 2> }", 2 * pi},
+    {"lathe_downwards", "lathe { linear_spline 4, <0, 2>, <1, 2>, <1, 0>, <0, 0> }", 2 * pi},
+    {"lathe_in_pieces_downwards",
+     "lathe { bezier_spline 12, <0, 2>, <0.3, 2>, <0.7, 2>, <1, 2>, <1, 2>, <1, 1.5>, <1, 0.5>, "
+     "<1, 0>, <1, 0>, <0.7, 0>, <0.3, 0>, <0, 0> }",
+     2 * pi},
     {"sor", "sor { 5, <1, -1>, <1, 0>, <1, 1>, <1, 2>, <1, 3> }", 2 * pi},
     {"ovus", "ovus { 1, 0.5 }", 4.91354},
     {"ovus_that_stands_on_its_point", "ovus { 0.5, 0.8 }", 2.27905},
@@ -292,6 +297,23 @@ double max_off_the_ball(const std::vector<Triangle>& triangles) {
             most = std::max(most, 1 - glm::length(t[i] + t[(i + 1) % 3]) / 2);
     }
     return most;
+}
+
+/// In povray a surface leads into an interior or out of it, whichever way its triangles run.
+TEST(PovShapes, MeshesWithAnInteriorFaceOutside) {
+    const std::string outward =
+        "triangle { 0, y, x } triangle { 0, x, z } triangle { 0, z, y } triangle { x, y, z }";
+    const std::string inward =
+        "triangle { 0, x, y } triangle { 0, z, x } triangle { 0, y, z } triangle { x, z, y }";
+    for (const std::string& mesh : {outward, inward})
+        for (const std::string interior : {"", "interior { ior 1.5 }"})
+            for (const std::string placed : {"", "scale <-1, 1, 1>"}) {
+                const double volume =
+                    volume_of_closed(parsed_scene("mesh { " + mesh + interior + placed + " }"));
+                const bool faces_inside = mesh == inward && interior.empty();
+                EXPECT_NEAR(volume, (faces_inside ? -1 : 1) / 6.0, 1e-6)
+                    << mesh << interior << placed;
+            }
 }
 
 TEST(PovShapes, FacetsLieWithinTheTolerance) {

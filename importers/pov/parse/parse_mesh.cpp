@@ -37,10 +37,12 @@ public:
 
     void give_to(Object& object) {
         object.has_inside = false; // an inside_vector that follows sets it
+        const bool faces_inside = volume() < 0;
         for (Group& group : groups_) {
             auto child = std::make_shared<Object>();
             child->kind = object.kind;
             child->place = object.place;
+            child->faces_inside = faces_inside;
             child->texture = std::move(group.texture);
             Shape shape;
             shape.fixed = double(group.facets.corners.size() / 3);
@@ -55,6 +57,21 @@ public:
     }
 
 private:
+    /// Returns the volume within all triangles, by a sixth; negative where they face inside.
+    double volume() const {
+        double sum = 0;
+        std::optional<dvec3> origin;
+        for (const Group& group : groups_) {
+            const std::vector<Corner>& c = group.facets.corners;
+            for (size_t i = 0; i + 2 < c.size(); i += 3) {
+                origin = origin.value_or(c[i].position);
+                sum += glm::dot(c[i].position - *origin, glm::cross(c[i + 1].position - *origin,
+                                                                    c[i + 2].position - *origin));
+            }
+        }
+        return sum;
+    }
+
     struct Group {
         std::optional<Texture> texture;
         Facets facets;

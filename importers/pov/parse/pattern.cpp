@@ -20,6 +20,7 @@
 #include <algorithm>
 #include <cmath>
 #include <unordered_map>
+#include <utility>
 
 namespace ovc::pov {
 
@@ -178,6 +179,7 @@ bool PatternParts::take() {
                                     : token.is("normal_map") ? MapOf::Normals
                                                              : MapOf::Pigments)
                      .stops;
+        stops_are_default_ = false;
         changed_ = true;
         return true;
     }
@@ -198,8 +200,10 @@ bool PatternParts::take_pattern(const Token& token) {
     if (token.is("facets") && of_ != MapOf::Normals)
         reader_.fail(token.place, "found facets, expected a pattern that is not for normals alone");
     choose(found->second.kind, found->second.wave);
-    if (stops_.empty() && (token.is("bozo") || token.is("mandel")))
+    if (stops_.empty() && (token.is("bozo") || token.is("mandel"))) {
         stops_ = default_stops(&token, found->second.kind);
+        stops_are_default_ = true;
+    }
     parse_arguments(token);
     return true;
 }
@@ -385,6 +389,8 @@ bool PatternParts::take_fractal_part() {
         return false;
     if (reader_.take("exponent")) {
         p[F::kExponent] = parse_int(reader_, 2, 33, "the exponent of a fractal");
+        if (p[F::kExponent] != 2 && std::exchange(stops_are_default_, false))
+            stops_.clear();
         return true;
     }
     const bool outside = reader_.take("exterior");

@@ -64,6 +64,7 @@ private:
     ProgramPtr program_;            // of Pattern::Kind::Function
     std::optional<ImageMap> image_; // of image_pattern
     std::vector<MapStop> stops_;
+    bool stops_are_default_ = false; // those of the pattern's word
 };
 
 } // namespace ovc::pov

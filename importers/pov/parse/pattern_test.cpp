@@ -90,6 +90,7 @@ const AskedColors kAskedColors[] = {
     {"mandel 22 interior 6, 1.78 scale 4 color_map { [0 rgb x] [1 rgb z] }",
      {{0.92998f, 0, 0.07002f}, {0.94457f, 0, 0.05543f}}},
     {"mandel 20", {{0, 1, 1}, {0, 0, 0}}},
+    {"mandel 20 exponent 3 scale 2", {{1, 1, 1}, {0, 0, 0}}},
     {"triangular rgb x, rgb z scale 0.4", {{1, 0, 0}, {0, 0, 1}}},
     {"square rgb x, rgb z scale 0.4", {{1, 0, 0}, {0, 0, 1}}},
     {"square rgb x rgb y rgb z rgb 1 scale <0.3, 1, 0.1> cubic_wave", {{1, 0, 0}, {0, 1, 0}}},

@@ -105,34 +105,59 @@ void revolve(const std::vector<ProfilePoint>& profile, int segments, const dvec2
         }
 }
 
-/// Returns the pieces of a lathe's profile, each in so many steps.
-std::vector<std::vector<ProfilePoint>> lathe_profiles(Curve curve, const std::vector<dvec2>& points,
-                                                      int steps) {
+/// The pieces of a lathe's profile. Its surface faces outside, so they run upwards on the whole.
+struct Profiles {
+    std::vector<std::vector<ProfilePoint>> pieces;
+    double min_radius = std::numeric_limits<double>::infinity();
+    bool are_turned = false; // they run the other way than in the file
+
+    /// Returns the volume inside, by a third of pi; negative where the surface faces inside.
+    double volume() const {
+        double sum = 0;
+        for (const std::vector<ProfilePoint>& piece : pieces) {
+            for (size_t i = 0; i + 1 < piece.size(); ++i) {
+                const dvec2 &p = piece[i].at, &q = piece[i + 1].at;
+                sum += (p.x * p.x + p.x * q.x + q.x * q.x) * (q.y - p.y);
+            }
+            sum += 3 * min_radius * min_radius * (piece.front().at.y - piece.back().at.y);
+        }
+        return sum;
+    }
+
+    void turn() {
+        are_turned = !are_turned;
+        for (std::vector<ProfilePoint>& piece : pieces) {
+            std::ranges::reverse(piece);
+            for (ProfilePoint& p : piece)
+                p.direction = -p.direction;
+        }
+    }
+};
+
+Profiles lathe_profiles(Curve curve, const std::vector<dvec2>& points, int steps) {
     const size_t stride = curve == Curve::Bezier ? 4 : 1;
-    std::vector<std::vector<ProfilePoint>> profiles;
+    Profiles profiles;
     for (size_t piece = 0; piece + points_of_a_piece(curve) <= points.size(); piece += stride) {
-        std::vector<ProfilePoint>& profile = profiles.emplace_back();
+        std::vector<ProfilePoint>& profile = profiles.pieces.emplace_back();
         for (int i = 0; i <= steps; ++i) {
             ProfilePoint p;
             p.at = curve_point(curve, &points[piece], double(i) / steps, &p.direction);
+            profiles.min_radius = std::min(profiles.min_radius, p.at.x);
             profile.push_back(p);
         }
     }
+    if (profiles.volume() < 0)
+        profiles.turn();
     return profiles;
 }
 
 /// Leads each end of a lathe's profile that no other piece goes on from back to a loose beginning,
 /// along the profile's least radius: povray's inside lies between the two, as its inside() tells.
-void close_lathe(const std::vector<std::vector<ProfilePoint>>& profiles, int segments,
-                 Facets& out) {
+void close_lathe(const Profiles& profiles, int segments, Facets& out) {
     std::vector<dvec2> begins, ends;
-    double min_radius = std::numeric_limits<double>::infinity();
-    for (const std::vector<ProfilePoint>& profile : profiles) {
+    for (const std::vector<ProfilePoint>& profile : profiles.pieces)
         begins.push_back(profile.front().at);
-        for (const ProfilePoint& p : profile)
-            min_radius = std::min(min_radius, p.at.x);
-    }
-    for (const std::vector<ProfilePoint>& profile : profiles) {
+    for (const std::vector<ProfilePoint>& profile : profiles.pieces) {
         const dvec2& end = profile.back().at;
         const auto next = std::find_if(begins.begin(), begins.end(),
                                        [&](const dvec2& begin) { return same(begin, end); });
@@ -144,8 +169,8 @@ void close_lathe(const std::vector<std::vector<ProfilePoint>>& profiles, int seg
     assert(begins.size() == ends.size());
     for (size_t i = 0; i < ends.size(); ++i)
         revolve({{ends[i], {}},
-                 {{min_radius, ends[i].y}, {}},
-                 {{min_radius, begins[i].y}, {}},
+                 {{profiles.min_radius, ends[i].y}, {}},
+                 {{profiles.min_radius, begins[i].y}, {}},
                  {begins[i], {}}},
                 segments, nullptr, out);
 }
@@ -197,10 +222,11 @@ Shape parse_lathe(Reader& reader) {
         return lathe_profiles(curve, points, steps_of(curve, segments));
     };
     shape.cut = [profiles](int segments, bool, Facets& out) {
-        const std::vector<std::vector<ProfilePoint>> pieces = profiles(segments);
-        for (size_t i = 0; i < pieces.size(); ++i) {
-            const dvec2 ends = dvec2(i, i + 1) / double(pieces.size());
-            revolve(pieces[i], segments, &ends, out);
+        const Profiles all = profiles(segments);
+        for (size_t i = 0; i < all.pieces.size(); ++i) {
+            const dvec2 ends =
+                (all.are_turned ? dvec2(i + 1, i) : dvec2(i, i + 1)) / double(all.pieces.size());
+            revolve(all.pieces[i], segments, &ends, out);
         }
     };
     shape.close = [profiles](int segments, Facets& out) {
