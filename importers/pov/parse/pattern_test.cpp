@@ -323,6 +323,12 @@ TEST(PovNormal, TiltsNormals) {
     const Pattern& pattern = scene.textures.at(material.bump->pattern.texture).pattern;
     EXPECT_EQ(pattern.kind, Pattern::Kind::Granite);
     EXPECT_EQ(pattern.turbulence, dvec3(0.2));
+    for (const char* const look :
+         {"no_bump_scale normal { bumps }", "normal { bumps } no_bump_scale scale 3"})
+        EXPECT_TRUE(
+            box_material(textured_scene("box { -1, 1 texture { " + std::string(look) + " } }"))
+                .bump->keeps_depth)
+            << look;
     const Scene named = textured_scene("#declare N = normal { bumps 0.4 }\n"
                                        "box { -1, 1 texture { normal { N bump_size 0.7 } } }");
     EXPECT_EQ(box_material(named).bump->kind, Bump::Kind::Noise);

@@ -382,6 +382,7 @@ static void take_mix(Reader& reader, PatternParts& mix, Texture& texture) {
 Texture parse_texture_parts(Reader& reader, Texture texture, char end) {
     const Deeper deeper(reader);
     PatternParts mix(reader, texture.mix, MapOf::Textures);
+    bool keeps_depth = false;
     while (!reader.peek().is(end)) {
         const Token token = reader.peek();
         if (const auto named_texture = take_named_if<Texture>(reader)) {
@@ -407,10 +408,12 @@ Texture parse_texture_parts(Reader& reader, Texture texture, char end) {
             texture = parse_material_map(reader, token);
         else if (reader.take("normal"))
             texture.normal = parse_normal(reader, texture.normal);
-        else if (mix.take()) {
-        } else if (!take_skipped(reader, {"no_bump_scale"}) && !reader.take(','))
+        else if (reader.take("no_bump_scale"))
+            keeps_depth = true;
+        else if (!mix.take() && !reader.take(','))
             reader.fail_here("a part of a texture");
     }
+    texture.normal.keeps_depth = texture.normal.keeps_depth || keeps_depth;
     take_mix(reader, mix, texture);
     return texture;
 }
