@@ -193,7 +193,7 @@ TEST(Finish, SlopesAreThoseOfTiltedNormals) {
     const float flat = seen().color.x;
     scene.materials[0].bump = Bump{.kind = Bump::Kind::Noise, .amount = 2, .pattern = {1, unmoved}};
     const SurfacePoint tilted = seen();
-    const TexturePoint there{tilted.position, tilted.normal, {1, -1, 0}};
+    const TexturePoint there{tilted.position, tilted.normal, tilted.view};
     EXPECT_NEAR(tilted.color.x, color_at(scene.textures, 0, there).rgb.x, 1e-5);
     EXPECT_GT(std::abs(tilted.color.x - flat), 0.01f);
 }
