@@ -57,7 +57,7 @@ void fill(Reader& reader, Array& array, size_t dimension, size_t first, size_t c
 Value parse_array(Reader& reader) {
     Array array;
     double count = 1;
-    while (reader.peek_operator().is('[')) {
+    while (reader.peek_more().is('[')) {
         reader.next();
         const int size = parse_int(reader, 1, 1 << 30, "the size of an array");
         array.sizes.push_back(size_t(size));
@@ -72,14 +72,14 @@ Value parse_array(Reader& reader) {
         reader.fail_here("'[' and the size of an array");
     take_items(reader, uint64_t(count));
     array.items.resize(size_t(count));
-    if (reader.peek_operator().is('{'))
+    if (reader.peek_more().is('{'))
         fill(reader, array, 0, 0, array.items.size());
     return array;
 }
 
 Value parse_layers(Reader& reader) {
     Texture texture = parse_texture(reader);
-    while (reader.peek_layer().is("texture")) {
+    while (reader.peek_more().is("texture")) {
         reader.next();
         texture = layered(reader, parse_texture(reader), texture);
     }
@@ -147,7 +147,7 @@ const Value& counted(Reader& reader, const Value& value) {
 /// Returns whether the value is part of an expression: an array of numbers, of which an item's
 /// indices come next, or a function whose arguments do.
 bool begins_number(Reader& reader, const ValueHandle& handle) {
-    const bool indices = reader.peek_operator().is('['), arguments = reader.peek_operator().is('(');
+    const bool indices = reader.peek_more().is('['), arguments = reader.peek_more().is('(');
     const Value* value = reader.value_of(handle);
     if (!value)
         return false;
@@ -175,7 +175,7 @@ std::optional<Value> take_whole(Reader& reader) {
         reader.put_back(token);
         return std::nullopt;
     }
-    if (reader.peek_operator().is('[') && reader.value_of(handle) &&
+    if (reader.peek_more().is('[') && reader.value_of(handle) &&
         std::holds_alternative<Array>(handle.slot->value))
         handle = parse_item(reader, *handle.slot);
     const Value* value = reader.value_of(handle);

@@ -135,6 +135,7 @@ void PatternParts::forget() {
     chosen_ = refused_ = false;
     changed_ = true;
     stops_.clear();
+    stops_are_default_ = false;
     pattern_ = {};
     program_.reset();
     image_.reset();

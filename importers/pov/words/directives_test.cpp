@@ -96,6 +96,16 @@ TEST(PovDirectives, DeclarationsNeedNoSemicolon) {
     EXPECT_VALUE(1, "1", "declare Old = 3 /* a /* nested */ comment */");
 }
 
+TEST(PovDirectives, MacrosBehindAValueRunOnceItIsDeclared) {
+    EXPECT_VALUE(5, "A[0]", "#macro M() #declare A[0] = 5; #end\n#declare A = array[1]\nM()");
+    EXPECT_VALUE(3, "B",
+                 "#macro M() #declare B = A[0]; #end #declare C = array[1] { 3 };\n"
+                 "#declare A = C\nM()");
+    EXPECT_VALUE(1, "defined(B)",
+                 "#macro M() #declare B = texture { A } #end\n"
+                 "#declare C = texture { pigment { rgb 1 } };\n#declare A = C\nM()");
+}
+
 TEST(PovDirectives, MacrosBehindATextureRunOnceItIsDeclared) {
     const std::string red = " = texture { pigment { rgb x } }\n";
     const std::string uses =

@@ -92,9 +92,9 @@ public:
     /// the value of another one, such as #declare: it is returned, but neither obeyed nor taken. In
     /// brackets, in a macro that gives the value and outside of directives it is obeyed.
     Token peek_operator() { return peek_held(Hold::Directives); }
-    /// Returns the next token where it may be another layer of a texture, likewise. A macro ends
-    /// the value too, so that it runs when the texture has been declared.
-    Token peek_layer() { return peek_held(Hold::DirectivesAndMacros); }
+    /// Returns the next token where it may be more of a value that could end here, such as another
+    /// layer of a texture, likewise. A macro ends the value too, and runs once it is declared.
+    Token peek_more() { return peek_held(Hold::DirectivesAndMacros); }
 
     /// Takes the sign `c`, or throws ParseError.
     void expect(char c, std::string_view after);
