@@ -5,9 +5,12 @@
 #pragma once
 
 #include "core/box.h"
+#include "importers/csg/box_tree.h"
 #include "importers/pov/shapes/facets.h"
 
+#include <cstdint>
 #include <functional>
+#include <vector>
 
 namespace ovc::pov {
 
@@ -16,6 +19,32 @@ struct Field {
     std::function<double(const dvec3&)> value;
     /// Returns a function that has the same values in this box only, but is cheaper. May be empty.
     std::function<std::function<double(const dvec3&)>(const Box&)> within;
+};
+
+/// Finds those of a field's parts that are near a place. It keeps a reference to them.
+template <class Part>
+class PartsByPlace {
+public:
+    /// box_of(part): where the part counts.
+    template <class BoxOf>
+    PartsByPlace(const std::vector<Part>& parts, BoxOf&& box_of) : parts_(&parts) {
+        std::vector<Box> boxes;
+        for (const Part& part : parts)
+            boxes.push_back(box_of(part));
+        tree_ = csg::BoxTree(boxes);
+    }
+
+    /// Returns the parts whose boxes touch `box`, in order.
+    std::vector<Part> near(const Box& box) const {
+        std::vector<Part> found;
+        for (const uint32_t i : tree_.touching(box))
+            found.push_back((*parts_)[i]);
+        return found;
+    }
+
+private:
+    const std::vector<Part>* parts_;
+    csg::BoxTree tree_;
 };
 
 /// Returns how many cells along its longest side make a closed shape as fine as a sphere of

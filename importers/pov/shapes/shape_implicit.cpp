@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reads implicit shapes: blob, quadric, cubic, quartic, poly and isosurface.
-#include "importers/csg/box_tree.h"
 #include "importers/csg/csg.h"
 #include "importers/pov/parse/blended_texture.h"
 #include "importers/pov/parse/parse_object.h"
@@ -190,14 +189,9 @@ void blend_textures(Reader& reader, const Components& parts,
 Field blob_field(const Components& parts, double threshold) {
     Field field;
     field.value = blob_value(parts, threshold);
-    std::vector<Box> boxes;
-    for (const Component& part : parts)
-        boxes.push_back(part.box);
-    field.within = [&parts, tree = csg::BoxTree(boxes), threshold](const Box& asked) {
-        Components near;
-        for (const uint32_t i : tree.touching(asked))
-            near.push_back(parts[i]);
-        return blob_value(std::move(near), threshold);
+    const PartsByPlace by_place(parts, [](const Component& part) { return part.box; });
+    field.within = [by_place, threshold](const Box& asked) {
+        return blob_value(by_place.near(asked), threshold);
     };
     return field;
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reads sphere_sweep: the space that a ball fills which moves along a spline and whose radius
 // follows one too.
-#include "importers/csg/box_tree.h"
 #include "importers/pov/shapes/implicit.h"
 #include "importers/pov/shapes/shape.h"
 
@@ -104,15 +103,10 @@ std::function<double(const dvec3&)> distance_to(Capsules capsules) {
 Field field_of(const Capsules& capsules) {
     Field field;
     field.value = distance_to(capsules);
-    std::vector<Box> boxes;
-    for (const TaperedCapsule& capsule : capsules)
-        boxes.push_back(capsule.box());
-    field.within = [&capsules, tree = csg::BoxTree(boxes)](const Box& asked) {
+    const PartsByPlace by_place(capsules, [](const TaperedCapsule& c) { return c.box(); });
+    field.within = [by_place](const Box& asked) {
         // Those that may be the nearest to a point of the box on either side of the surface.
-        Capsules near;
-        for (const uint32_t i : tree.touching(asked.padded(max_component(asked.extent()))))
-            near.push_back(capsules[i]);
-        return distance_to(std::move(near));
+        return distance_to(by_place.near(asked.padded(max_component(asked.extent()))));
     };
     return field;
 }
