@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Compares `overcast trace` with Embree's robust mode on the same rays. Where the two differ, exact
 // arithmetic decides which is right. Every difference is listed with its explanation.
+#include "host/backend/embree.h"
 #include "importers/importer.h"
 #include "kdtree/test_soups.h"
 #include "tests/exact.h"
@@ -8,7 +9,6 @@
 #include "tests/run_command.h"
 #include "testscenes/catalog.h"
 
-#include <embree3/rtcore.h>
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -64,7 +64,7 @@ std::vector<Hit> ask_overcast(const std::string& scene, const std::vector<Ray>& 
     return hits;
 }
 
-/// Traces one ray at a time with Embree 3 in robust mode. Chunks must be at the origin, because
+/// Traces one ray at a time with Embree in robust mode. Chunks must be at the origin, because
 /// Embree has floats only.
 class Embree {
 public:
@@ -94,8 +94,11 @@ public:
     }
 
     TriangleId nearest(const Ray& ray) const {
-        RTCIntersectContext context;
-        rtcInitIntersectContext(&context);
+        RTCRayQueryContext context;
+        rtcInitRayQueryContext(&context);
+        RTCIntersectArguments arguments;
+        rtcInitIntersectArguments(&arguments);
+        arguments.context = &context;
         RTCRayHit query{};
         query.ray.org_x = float(ray.org.x);
         query.ray.org_y = float(ray.org.y);
@@ -106,7 +109,7 @@ public:
         query.ray.tfar = INFINITY;
         query.ray.mask = ~0u;
         query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-        rtcIntersect1(scene_, &context, &query);
+        rtcIntersect1(scene_, &query, &arguments);
         if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID)
             return {};
         return {query.hit.geomID, query.hit.primID};

@@ -66,7 +66,7 @@ PLACES = {
     r"(OpenEXR/|Imf)": ["host/output/image_exr.cpp"],
     r"png\.h": ["importers/png.cpp"],
     r"OpenImageIO/": ["textures/"],
-    r"embree": ["host/backend/backend_embree.cpp"],
+    r"embree": ["host/backend/embree.h"],
     r"mpi\.h": ["plugin/ranks/transport/mpi_transport.cpp", "plugin/examples/ranks.c"],
     r"boost/": ["importers/csg/exact.h"],
     r"tachyon\.h": ["plugin/hosts/tachyon/tachyon_triangle.h"],

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Embree 3 as a backend: a peer to compare with. No other file of the host includes Embree.
+// Embree as a backend: a peer to compare with.
 #include "host/backend/backend.h"
 
 #include "core/system/parallel.h"
 #include "core/system/stopwatch.h"
+#include "host/backend/embree.h"
 
-#include <embree3/rtcore.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -19,13 +19,24 @@ namespace {
 
 /// The context of a call, with what its rays do not see.
 struct Context {
-    RTCIntersectContext base;  // first, because Embree hands its address to the filter
+    RTCRayQueryContext base;   // first, because Embree hands its address to the filter
     const Exclusions* without; // of the rays of the task; null where they see everything
     const double* begins;      // t of the rays of the task where Embree's is 0
     size_t first;              // the ray among them whose id is 0
     const Soup* soup;
 
     Context(const Exclusions* excluded, const double* begins_, size_t first_ray, const Soup& of);
+
+    RTCIntersectArguments nearest(RTCRayQueryFlags flags) {
+        RTCIntersectArguments arguments;
+        rtcInitIntersectArguments(&arguments);
+        return filled(arguments, flags);
+    }
+    RTCOccludedArguments any(RTCRayQueryFlags flags) {
+        RTCOccludedArguments arguments;
+        rtcInitOccludedArguments(&arguments);
+        return filled(arguments, flags);
+    }
 
     bool counts(size_t ray, const Hit& hit) const {
         if (!without->skip.empty() && without->skip[ray] == hit.id)
@@ -37,6 +48,10 @@ struct Context {
         return !sieve.filter ||
                (sieve.filter->keep({&sieve.name, 1}, {&hit, 1}, {&keep, 1}) && keep);
     }
+
+private:
+    template <class Arguments>
+    Arguments filled(Arguments arguments, RTCRayQueryFlags flags);
 };
 
 void refuse_excluded(const RTCFilterFunctionNArguments* a) {
@@ -55,9 +70,18 @@ void refuse_excluded(const RTCFilterFunctionNArguments* a) {
 Context::Context(const Exclusions* excluded, const double* begins_, size_t first_ray,
                  const Soup& of)
     : without(excluded), begins(begins_), first(first_ray), soup(&of) {
-    rtcInitIntersectContext(&base);
-    if (without)
-        base.filter = refuse_excluded;
+    rtcInitRayQueryContext(&base);
+}
+
+template <class Arguments>
+Arguments Context::filled(Arguments arguments, RTCRayQueryFlags flags) {
+    arguments.context = &base;
+    arguments.flags = flags;
+    if (without) {
+        arguments.flags = RTCRayQueryFlags(flags | RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER);
+        arguments.filter = refuse_excluded;
+    }
+    return arguments;
 }
 
 /// Whether Embree takes such numbers: none beyond its FLT_LARGE, and no NaN.
@@ -78,26 +102,28 @@ struct Calls;
 template <>
 struct Calls<1> {
     using Query = RTCRayHit;
-    static constexpr RTCIntersectContextFlags kFlags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
     static void nearest(RTCScene scene, Context& context, const int* valid, Query& query) {
+        RTCIntersectArguments arguments = context.nearest(RTC_RAY_QUERY_FLAG_INCOHERENT);
         if (*valid)
-            rtcIntersect1(scene, &context.base, &query);
+            rtcIntersect1(scene, &query, &arguments);
     }
     static void any(RTCScene scene, Context& context, const int* valid, Query& query) {
+        RTCOccludedArguments arguments = context.any(RTC_RAY_QUERY_FLAG_INCOHERENT);
         if (*valid)
-            rtcOccluded1(scene, &context.base, &query.ray);
+            rtcOccluded1(scene, &query.ray, &arguments);
     }
 };
 
 template <>
 struct Calls<16> {
     using Query = RTCRayHit16;
-    static constexpr RTCIntersectContextFlags kFlags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
     static void nearest(RTCScene scene, Context& context, const int* valid, Query& query) {
-        rtcIntersect16(valid, scene, &context.base, &query);
+        RTCIntersectArguments arguments = context.nearest(RTC_RAY_QUERY_FLAG_COHERENT);
+        rtcIntersect16(valid, scene, &query, &arguments);
     }
     static void any(RTCScene scene, Context& context, const int* valid, Query& query) {
-        rtcOccluded16(valid, scene, &context.base, &query.ray);
+        RTCOccludedArguments arguments = context.any(RTC_RAY_QUERY_FLAG_COHERENT);
+        rtcOccluded16(valid, scene, &query.ray, &arguments);
     }
 };
 
@@ -166,7 +192,6 @@ private:
     void call(RTCScene scene, const Call& ask) {
         for (size_t i = 0; i < count_; i += N) {
             Context context(sees_all_ ? nullptr : without_, begins_.data(), i, soup_);
-            context.base.flags = Calls<N>::kFlags;
             ask(scene, context, &valid_[i], queries_[i / N]);
         }
     }
@@ -203,7 +228,7 @@ public:
                                                                    : RTC_BUILD_QUALITY_HIGH);
         rtcSetSceneFlags(scene_, RTCSceneFlags((mode == EmbreeMode::Robust ? RTC_SCENE_FLAG_ROBUST
                                                                            : RTC_SCENE_FLAG_NONE) |
-                                               RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION));
+                                               RTC_SCENE_FLAG_FILTER_FUNCTION_IN_ARGUMENTS));
         for (const Chunk& chunk : soup.chunks)
             add(chunk);
         rtcCommitScene(scene_);

@@ -4,8 +4,7 @@
 
 #include "core/ray.h"
 #include "core/soup.h"
-
-#include <embree3/rtcore.h>
+#include "host/backend/embree.h"
 
 #include <array>
 #include <cmath>
@@ -55,8 +54,11 @@ public:
         rtcCommitScene(scene_);
     }
     TriangleId nearest(const Ray& ray) const {
-        RTCIntersectContext context;
-        rtcInitIntersectContext(&context);
+        RTCRayQueryContext context;
+        rtcInitRayQueryContext(&context);
+        RTCIntersectArguments arguments;
+        rtcInitIntersectArguments(&arguments);
+        arguments.context = &context;
         RTCRayHit query{};
         query.ray = {float(ray.org.x),
                      float(ray.org.y),
@@ -71,7 +73,7 @@ public:
                      0,
                      0};
         query.hit.geomID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-        rtcIntersect1(scene_, &context, &query);
+        rtcIntersect1(scene_, &query, &arguments);
         if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID)
             return {};
         return {query.hit.instID[0], query.hit.primID};
