@@ -47,7 +47,7 @@ TEST(BenchCommand, CertifiedContendersAnswerAlike) {
             SCOPED_TRACE(m["contender"].get<std::string>() + ", " +
                          m["workload"].get<std::string>());
             const auto [first, is_new] = checksums.try_emplace(m["workload"], m["checksum"]);
-            EXPECT_EQ(first->second, m["checksum"]);
+            EXPECT_EQ(first->second, m["checksum"].get<std::string>());
             EXPECT_EQ(m["differ"], 0);
             EXPECT_GT(m["rays"], 0);
             EXPECT_GT(m["call_seconds"]["median"], 0.0);
@@ -96,7 +96,8 @@ TEST(BenchCommand, InstancesAnswerAlikeSharedOrBaked) {
               3 * scene["contenders"][1]["level2_bytes"].get<uint64_t>());
     std::map<std::string, std::string> checksums; // by workload
     for (const auto& m : scene["measurements"])
-        EXPECT_EQ(checksums.try_emplace(m["workload"], m["checksum"]).first->second, m["checksum"])
+        EXPECT_EQ(checksums.try_emplace(m["workload"], m["checksum"]).first->second,
+                  m["checksum"].get<std::string>())
             << m["workload"];
     EXPECT_EQ(checksums.size(), 4u);
 }

@@ -98,7 +98,7 @@ TEST(BenchText, JsonHasWhatTheTableShows) {
             SCOPED_TRACE(m["contender"].get<std::string>());
             const auto& kernel = m["kernel_seconds"];
             ++row;
-            EXPECT_EQ(rows[row][0], m["contender"]);
+            EXPECT_EQ(rows[row][0], m["contender"].get<std::string>());
             EXPECT_EQ(cell(rows, row, "call s"), shown(m["call_seconds"]["median"], 4));
             EXPECT_EQ(cell(rows, row, "min"), shown(m["call_seconds"]["min"], 4));
             EXPECT_EQ(cell(rows, row, "max"), shown(m["call_seconds"]["max"], 4));
@@ -116,7 +116,7 @@ TEST(BenchText, JsonHasWhatTheTableShows) {
             EXPECT_EQ(cell(rows, row, "time to fast"), shown(m["call_time_to_fast"], 2));
             EXPECT_EQ(cell(rows, row, "kernel to fast"), shown(m["kernel_time_to_fast"], 2));
             EXPECT_EQ(cell(rows, row, "time to first"), shown(m["call_time_to_first"], 2));
-            EXPECT_EQ(cell(rows, row, "checksum"), m["checksum"]);
+            EXPECT_EQ(cell(rows, row, "checksum"), m["checksum"].get<std::string>());
             ++compared;
         }
     }
@@ -130,7 +130,7 @@ TEST(BenchText, SaysWhoWasBuilt) {
     const auto& contenders = document["scenes"][0]["contenders"];
     ASSERT_EQ(rows.size(), 1 + contenders.size());
     for (size_t i = 0; i < contenders.size(); ++i) {
-        EXPECT_EQ(rows[i + 1][0], contenders[i]["label"]);
+        EXPECT_EQ(rows[i + 1][0], contenders[i]["label"].get<std::string>());
         EXPECT_EQ(cell(rows, i + 1, "bytes/triangle"), shown(contenders[i]["bytes_a_triangle"], 1));
         EXPECT_EQ(cell(rows, i + 1, "build s"), shown(contenders[i]["build_seconds"]["total"], 3));
     }
