@@ -21,11 +21,11 @@ class Disk:
         self.folder, self.library = folder, library
         self.outcomes = {}
 
-    def run(self, command, fault=None, rays=None):
-        environment = dict(os.environ, OVC_KERNEL_CACHE="off")
+    def run(self, command, fault=None, rays=None, kernels=None):
+        environment = dict(os.environ, OVC_KERNEL_CACHE=str(kernels or "off"))
         if fault:
             environment |= {"LD_PRELOAD": self.library, "OVC_FAULT": fault,
-                            "OVC_FAULT_FOLDER": str(self.folder)}
+                            "OVC_FAULT_FOLDER": str(kernels or self.folder)}
         return subprocess.run([str(word) for word in command], env=environment, text=True,
                               input=rays, capture_output=True, timeout=SECONDS)
 
@@ -63,6 +63,25 @@ class Disk:
         if self.check_end(command, fault, done) != (done.stdout == whole) or \
                 not whole.startswith(done.stdout):
             sys.exit(f"{fault}: {' '.join(map(str, command[1:]))} tells {done.stdout}")
+
+    def check_kernels(self, command, picture):
+        """Runs a command whose kernels are kept on the disk, which it can do without."""
+        kernels = self.folder / "kernels"
+        self.run(command, kernels=kernels)
+        whole, kept = picture.read_bytes(), sorted(kernels.iterdir())
+        if not kept:
+            sys.exit("no kernel was kept")
+        for call in ("mmap", "pread", "write"):
+            for fault in faults_of(call) + [f"eio:{call}:2"]:
+                if call == "write":
+                    for file in kernels.iterdir():
+                        file.unlink()
+                done = self.run(command, fault, kernels=kernels)
+                if done.returncode or done.stderr or picture.read_bytes() != whole:
+                    sys.exit(f"{fault}: kernels that are kept: exit code {done.returncode}: "
+                             f"{done.stderr}")
+                if set(kernels.iterdir()) - set(kept):
+                    sys.exit(f"{fault}: kernels that are kept: another file is left")
 
 
 def faults_of(call):
@@ -105,6 +124,8 @@ def main():
             whole = disk.run(command, rays=rays).stdout
             for fault in faults_of("pread") + ["none:pread:1"]:
                 disk.check_told(command, whole, fault, rays)
+        disk.check_kernels([overcast, "render", "sphere-3", "--size", "40x30", "--quiet", "-o",
+                            picture], picture)
         for sentence, fault in disk.outcomes.items():
             print(f"{fault}: {sentence}")
     return 0

@@ -4,9 +4,10 @@
 #include "gpu/gl/program_store.h"
 
 #include "core/file/archive.h"
-#include "core/file/mapped_file.h"
+#include "core/file/disk_file.h"
 #include "core/file/replace_file.h"
 #include "core/system/folder.h"
+#include "core/system/line_allocator.h"
 #include "core/text/format_text.h"
 
 #include <algorithm>
@@ -79,10 +80,14 @@ bool ProgramStore::load(const std::vector<std::string>& sources, GLuint program)
         return false;
     const std::string who = driver();
     const fs::path path = file_of(key_of(sources, who));
-    const Result<MappedFile> file = MappedFile::open(path);
-    if (!file)
+    // Not mapped: where a disk fails under a mapped file, a signal ends the host's process.
+    const Result<DiskFile> file = DiskFile::open(path);
+    if (!file || file->bytes() > max_bytes_)
         return false;
-    const Result<Archive> archive = Archive::open(file->bytes(), kKind, kVersion);
+    std::vector<std::byte, LineAllocator<std::byte>> bytes(file->bytes());
+    if (!file->read(0, bytes))
+        return false;
+    const Result<Archive> archive = Archive::open(bytes, kKind, kVersion);
     if (!archive)
         return false;
     const Result<Bytes> from = archive->part("driver");

@@ -2,7 +2,8 @@
 // Preloaded into a program, makes reads and writes of regular files fail as a disk might.
 // OVC_FAULT=KIND:CALL:N, such as eio:pread:12, is the N-th of such calls, from 1 on; kinds are eio,
 // enospc, short (half of the bytes), eintr and none. eio and enospc stay from then on; the others
-// come every N calls. OVC_FAULT_FOLDER: files elsewhere are left alone.
+// come every N calls. A mapping that fails is made, and fails when it is touched, as it does where
+// the disk can read no more. OVC_FAULT_FOLDER: files elsewhere are left alone.
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>
@@ -11,6 +12,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 #include <unistd.h>
 
 static atomic_long calls;
@@ -79,4 +81,14 @@ ssize_t pwrite64(int file, const void* from, size_t size, off64_t at) {
 
 ssize_t pwrite(int file, const void* from, size_t size, off_t at) {
     return pwrite64(file, from, size, at);
+}
+
+/* Where it is to fail, it maps what lies far behind the file's end. */
+void* mmap64(void* at, size_t size, int may, int flags, int file, off64_t offset) {
+    const off64_t far = file >= 0 && allowed("mmap", file, size) < 0 ? (off64_t)1 << 40 : 0;
+    return NEXT(mmap64)(at, size, may, flags, file, offset + far);
+}
+
+void* mmap(void* at, size_t size, int may, int flags, int file, off_t offset) {
+    return mmap64(at, size, may, flags, file, offset);
 }
