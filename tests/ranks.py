@@ -8,6 +8,7 @@ usage: ranks.py OVERCAST            some of it, for the gate
        ranks.py OVERCAST --kills N  a rank is killed at N random moments
        ranks.py OVERCAST --cost     speed and memory of 2 ranks of a thread against 1 of two
        ranks.py EXAMPLE --example LIBRARY   the C example with 1, 2 and 3 ranks
+       ranks.py HOST --absent LIBRARY       a rank never comes to commit; HOST: faults/absent_rank.c
 """
 import filecmp
 import json
@@ -281,6 +282,20 @@ def compare_example(example, library):
     print("same: the example's picture on 1, 2 and 3 ranks")
 
 
+def miss_a_rank(host, library):
+    begun = time.monotonic()
+    said = run(2, [host, library], wanted=None).stdout
+    took = time.monotonic() - begun
+    if "no device" in said:
+        print("skipped: no device for the plugin")
+        return 77
+    if not re.search(r"commit: 7: rank 0 on .* has waited 1 s for another rank", said) or \
+            "destroyed" not in said or took > 30:
+        fail(f"a rank that never comes to commit, after {took:.1f} s: {said}")
+    print(f"a rank that never comes to commit: an error, and all ended in {took:.1f} s")
+    return 0
+
+
 def main():
     overcast, *mode = sys.argv[1:]
     if not shutil.which("mpirun"):
@@ -290,6 +305,8 @@ def main():
         folder = pathlib.Path(name)
         if mode[:1] == ["--example"]:
             compare_example(overcast, mode[1])
+        elif mode[:1] == ["--absent"]:
+            return miss_a_rank(overcast, mode[1])
         elif mode[:1] == ["--kills"]:
             kill_ranks(overcast, folder, int(mode[1]),
                        PATH_BOX + ["--samples", "64", "--size", "160x160"])

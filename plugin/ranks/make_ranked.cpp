@@ -106,10 +106,12 @@ Result<std::unique_ptr<Structure>> make_structure(const Soup& soup, const BuildR
         cut_alike(*terms, (*transport)->ranks(), options);
     }
     Result<std::unique_ptr<TwoLevel>> local = built_here(soup, request, options);
+    // Where one could not build, its leaves would differ from those of the others as well.
+    const Result<Done> built = local ? Result<Done>(Done{}) : Result<Done>(local.error());
+    if (const Result<Done> all = first_error(notes, **transport, built); !all)
+        return all.error();
     const Result<Done> alike = check_shares(notes, **transport, sharing.checksum());
-    if (const Result<Done> all =
-            first_error(notes, **transport, local ? alike : Result<Done>(local.error()));
-        !all)
+    if (const Result<Done> all = first_error(notes, **transport, alike); !all)
         return all.error();
     if (!sharing.shares())
         return std::unique_ptr<Structure>(std::move(*local));

@@ -3,6 +3,7 @@
 // either whole or gone.
 #include "core/stream/backlog.h"
 #include "core/system/turn.h"
+#include "plugin/ranks/transport/message_bytes.h"
 #include "tests/misuse/field.h"
 #include "tests/misuse/no_memory.h"
 
@@ -301,6 +302,15 @@ TEST(WithoutMemoryTurn, AThreadGivesItUp) {
     turn.unlock();
     EXPECT_TRUE(turn.try_lock()) << "nobody waits for it";
     turn.unlock();
+}
+
+TEST(WithoutMemoryMessage, ThatIsEmptyTakesNone) {
+    const NoMemory none(0);
+    {
+        MessageBytes bytes;
+        const MessageBytes moved(std::move(bytes));
+    }
+    EXPECT_FALSE(none.was_missed());
 }
 
 TEST(WithoutMemoryBacklog, TakesRaysWholeOrNot) {

@@ -17,7 +17,10 @@ class MessageBytes {
 public:
     MessageBytes() = default;
     explicit MessageBytes(size_t size) : block_(kept().take(size)), size_(size) {}
-    ~MessageBytes() { kept().give_back(std::move(block_)); }
+    ~MessageBytes() {
+        if (block_.bytes) // else kept() may not be there yet, and there may be no memory for it
+            kept().give_back(std::move(block_));
+    }
     MessageBytes(MessageBytes&& other) noexcept
         : block_(std::exchange(other.block_, {})), size_(std::exchange(other.size_, 0)) {}
     MessageBytes& operator=(MessageBytes&& other) noexcept {
@@ -60,7 +63,7 @@ private:
         void give_back(Block block) noexcept {
             constexpr size_t kMin = size_t(1) << 16; // less the C library keeps by itself
             constexpr size_t kMaxBytes = size_t(8) << 20;
-            if (!block.bytes || block.size < kMin)
+            if (block.size < kMin)
                 return;
             const std::lock_guard lock(mutex_);
             if (bytes_ + block.size > kMaxBytes || blocks_.size() == kMaxBlocks)

@@ -64,6 +64,12 @@ void check_mpi(int code, const char* doing) {
         throw mpi_failure(code, doing);
 }
 
+/// Tells that this rank has waited too long.
+std::string waited_in_vain(double seconds, const char* what) {
+    return format_text("{} has waited {} s for another rank while {}", name_of_this_process(),
+                       seconds, what);
+}
+
 /// While it lives, a call of MPI waits for all ranks, and would wait for ever for one that hangs.
 /// Then this ends the process, if it may.
 class LimitedWait {
@@ -79,8 +85,7 @@ public:
             const auto timeout = std::chrono::duration<double>(world().timeout_seconds);
             changed.wait_for(lock, stop, timeout, [] { return false; });
             if (!stop.stop_requested())
-                end_process(format_text("{} has waited {} s for another rank while {}",
-                                        name_of_this_process(), timeout.count(), what));
+                end_process(waited_in_vain(timeout.count(), what));
         });
     }
 
@@ -145,11 +150,69 @@ Result<Done> start_mpi() {
     return Done{};
 }
 
+/// What MPI writes to where ranks come together. It stays in memory where one does not come, for
+/// MPI writes to it whenever that does.
+struct Meeting {
+    MPI_Comm comm = MPI_COMM_NULL; // of these ranks, for one transport alone
+    char name[MPI_MAX_PROCESSOR_NAME] = {};
+    std::vector<char> names; // of all of them
+};
+
+/// Waits for a call that all ranks make. Throws where one of them does not make it in time: a call
+/// of MPI that waits by itself would do so for ever.
+void await_all_ranks(MPI_Request request, double timeout_seconds) {
+    const auto until = Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                                          std::chrono::duration<double>(timeout_seconds));
+    std::chrono::microseconds nap(50);
+    int came = 0;
+    while (true) {
+        check_mpi(MPI_Test(&request, &came, MPI_STATUS_IGNORE), "bring ranks together");
+        if (came)
+            return;
+        if (Clock::now() >= until)
+            break;
+        std::this_thread::sleep_for(nap);
+        nap = std::min(nap * 2, std::chrono::microseconds(5000));
+    }
+    const std::string sentence = waited_in_vain(timeout_seconds, "ranks come together");
+    if (world().may_end_process)
+        end_process(sentence);
+    throw std::runtime_error(sentence);
+}
+
+/// All ranks of the communicator call this. Nothing: MPI makes no communicator like it.
+std::unique_ptr<Meeting> meet(MPI_Comm given, double timeout_seconds) {
+    auto meeting = std::make_unique<Meeting>();
+    // By default MPI ends the process on an error, as for a handle that is none.
+    MPI_Errhandler before;
+    MPI_Request request = MPI_REQUEST_NULL;
+    MPI_Comm_get_errhandler(MPI_COMM_WORLD, &before);
+    MPI_Comm_set_errhandler(MPI_COMM_WORLD, MPI_ERRORS_RETURN);
+    const int made = MPI_Comm_idup(given, &meeting->comm, &request);
+    MPI_Comm_set_errhandler(MPI_COMM_WORLD, before);
+    MPI_Errhandler_free(&before);
+    if (made != MPI_SUCCESS)
+        return nullptr;
+    Meeting* const kept = meeting.release();
+    await_all_ranks(request, timeout_seconds);
+    MPI_Comm_set_errhandler(kept->comm, MPI_ERRORS_RETURN);
+    int length = 0, ranks = 0;
+    MPI_Get_processor_name(kept->name, &length);
+    MPI_Comm_size(given, &ranks);
+    kept->names.resize(size_t(ranks) * MPI_MAX_PROCESSOR_NAME);
+    // By the given communicator: Open MPI 4.1 crashes where a message of the new one arrives before
+    // its rank has it.
+    check_mpi(MPI_Iallgather(kept->name, MPI_MAX_PROCESSOR_NAME, MPI_CHAR, kept->names.data(),
+                             MPI_MAX_PROCESSOR_NAME, MPI_CHAR, given, &request),
+              "bring ranks together");
+    await_all_ranks(request, timeout_seconds);
+    return std::unique_ptr<Meeting>(kept);
+}
+
 class MpiTransport final : public Transport {
 public:
-    /// comm: of this transport alone.
-    MpiTransport(MPI_Comm comm, double timeout_seconds)
-        : comm_(comm),
+    MpiTransport(const Meeting& meeting, double timeout_seconds)
+        : comm_(meeting.comm),
           timeout_(std::chrono::duration_cast<Clock::duration>(
               std::chrono::duration<double>(timeout_seconds))) {
         int rank = 0, ranks = 0;
@@ -157,7 +220,8 @@ public:
         MPI_Comm_size(comm_, &ranks);
         rank_ = uint32_t(rank);
         ranks_ = uint32_t(ranks);
-        gather_hosts();
+        for (uint32_t i = 0; i < ranks_; ++i)
+            hosts_.push_back(&meeting.names[size_t(i) * MPI_MAX_PROCESSOR_NAME]);
         int likeness = MPI_UNEQUAL;
         MPI_Comm_compare(comm_, MPI_COMM_WORLD, &likeness);
         if (likeness == MPI_CONGRUENT && world().names.empty())
@@ -167,9 +231,12 @@ public:
         thread_ = std::thread([this] { run(); });
     }
     ~MpiTransport() override {
+        // An exception takes this rank out of what all of them do: the others must not wait for it.
+        if (std::uncaught_exceptions() > exceptions_)
+            give_up(out_of_memory());
         close();
         // With a rank gone, a call that all ranks make would not return.
-        if (!lost())
+        if (!lost_is_told())
             MPI_Comm_free(&comm_);
     }
 
@@ -211,17 +278,6 @@ private:
         Message message;   // or
         uint32_t word = 0; // about a rank
     };
-
-    void gather_hosts() {
-        char name[MPI_MAX_PROCESSOR_NAME] = {};
-        int length = 0;
-        MPI_Get_processor_name(name, &length);
-        std::vector<char> all(size_t(ranks_) * MPI_MAX_PROCESSOR_NAME);
-        MPI_Allgather(name, MPI_MAX_PROCESSOR_NAME, MPI_CHAR, all.data(), MPI_MAX_PROCESSOR_NAME,
-                      MPI_CHAR, comm_);
-        for (uint32_t rank = 0; rank < ranks_; ++rank)
-            hosts_.push_back(&all[size_t(rank) * MPI_MAX_PROCESSOR_NAME]);
-    }
 
     void wake() {
         const std::lock_guard lock(mutex_);
@@ -380,6 +436,7 @@ private:
 
     MPI_Comm comm_;
     const Clock::duration timeout_;
+    const int exceptions_ = std::uncaught_exceptions();
     uint32_t rank_ = 0, ranks_ = 1;
     std::vector<std::string> hosts_;
     std::atomic<bool> closing_{false}, given_up_{false};
@@ -401,30 +458,28 @@ Result<std::unique_ptr<Transport>> make_mpi_transport(const MpiTransportOptions&
     const double timeout = options.timeout_seconds > 0 ? options.timeout_seconds : kDefaultTimeout;
     if (options.may_end_process)
         world() = {true, timeout, {}};
-    const LimitedWait limit("MPI starts");
-    if (const Result<Done> started = start_mpi(); !started)
-        return started.error();
+    {
+        const LimitedWait limit("MPI starts");
+        if (const Result<Done> started = start_mpi(); !started)
+            return started.error();
+    }
     const MPI_Comm given =
         options.communicator ? MPI_Comm_f2c(options.communicator) : MPI_COMM_WORLD;
     if (given == MPI_COMM_NULL)
         return Error{format_text("ovc_scene_config.communicator is {}, which is no communicator",
                                  options.communicator),
                      ErrorKind::InvalidArgument};
-    // By default MPI ends the process on an error, as for a handle that is none.
-    MPI_Errhandler before;
-    MPI_Comm_get_errhandler(MPI_COMM_WORLD, &before);
-    MPI_Comm_set_errhandler(MPI_COMM_WORLD, MPI_ERRORS_RETURN);
-    MPI_Comm own = MPI_COMM_NULL;
-    const int made = MPI_Comm_dup(given, &own);
-    MPI_Comm_set_errhandler(MPI_COMM_WORLD, before);
-    MPI_Errhandler_free(&before);
-    if (made != MPI_SUCCESS)
-        return Error{format_text("MPI cannot make a communicator like "
-                                 "ovc_scene_config.communicator, which is {}",
-                                 options.communicator),
-                     ErrorKind::InvalidArgument};
-    MPI_Comm_set_errhandler(own, MPI_ERRORS_RETURN);
-    return std::unique_ptr<Transport>(std::make_unique<MpiTransport>(own, timeout));
+    try {
+        const std::unique_ptr<Meeting> meeting = meet(given, timeout);
+        if (meeting)
+            return std::unique_ptr<Transport>(std::make_unique<MpiTransport>(*meeting, timeout));
+    } catch (const std::runtime_error& error) {
+        return Error{error.what()};
+    }
+    return Error{format_text("MPI cannot make a communicator like ovc_scene_config.communicator, "
+                             "which is {}",
+                             options.communicator),
+                 ErrorKind::InvalidArgument};
 }
 
 void abort_all_ranks(int code) {
