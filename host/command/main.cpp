@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The `overcast` command hands over to a subcommand. It prints an error as one sentence and exits
 // with 1.
+#include "core/system/caught_error.h"
 #include "host/command/command.h"
 #include "host/ranks/ranks.h"
 #include "host/terminal/interrupt.h"
@@ -12,8 +13,6 @@
 #include <unistd.h>
 
 #include <csignal>
-#include <exception>
-#include <new>
 #include <string>
 
 /// One of several ranks that fails ends all, because the others would wait for it.
@@ -42,9 +41,7 @@ int main(int argc, char** argv) {
         if (!code)
             return fail(code.error().message);
         return *code;
-    } catch (const std::bad_alloc&) {
-        return fail("out of memory");
-    } catch (const std::exception& error) {
-        return fail(error.what());
+    } catch (...) {
+        return fail(ovc::caught_error().message);
     }
 }

@@ -5,6 +5,7 @@
 
 #include "core/changes.h"
 #include "core/soup.h"
+#include "core/system/caught_error.h"
 #include "core/system/log.h"
 #include "core/system/parallel.h"
 #include "core/system/turn.h"
@@ -30,8 +31,8 @@
 #include <memory>
 #include <mutex>
 #include <new>
+#include <optional>
 #include <string>
-#include <system_error>
 #include <thread>
 #include <tuple>
 #include <type_traits>
@@ -213,17 +214,10 @@ ovc_result told_result(Keeper& messages, Body&& body) {
         return fail(failure.code, failure.message);
     } catch (const std::bad_alloc&) {
         return fail(OVC_ERROR_OUT_OF_MEMORY, "out of host memory");
-    } catch (const std::system_error& e) {
-        // The system refuses a thread, for want of memory or because of a limit.
-        if (e.code() == std::errc::resource_unavailable_try_again ||
-            e.code() == std::errc::not_enough_memory)
-            return fail(OVC_ERROR_OUT_OF_MEMORY,
-                        std::string("the system refuses a thread: out of memory, or a limit "
-                                    "(ulimit -u, a container's pids) is reached: ") +
-                            e.what());
-        return fail(OVC_ERROR_INTERNAL, std::string("internal error: ") + e.what());
     } catch (const std::exception& e) {
-        return fail(OVC_ERROR_INTERNAL, std::string("internal error: ") + e.what());
+        const std::optional<Error> refused = refused_thread(e);
+        return refused ? fail(OVC_ERROR_OUT_OF_MEMORY, refused->message)
+                       : fail(OVC_ERROR_INTERNAL, std::string("internal error: ") + e.what());
     } catch (...) {
         return fail(OVC_ERROR_INTERNAL, "internal error");
     }
