@@ -5,6 +5,7 @@
 #include "core/text/lower_case.h"
 #include "core/text/suggestion.h"
 #include "importers/readers.h"
+#include "importers/scene_file/read_apart.h"
 #include "importers/scene_file/sound_textures.h"
 
 #include <fmt/format.h>
@@ -78,7 +79,7 @@ static Result<Scene> read(const std::filesystem::path& path, const ImportOptions
     if (!std::filesystem::exists(path, ec))
         return Error{fmt::format("{}: no such file{}", path.string(), did_you_mean_file(path))};
     if (!extension.empty() && assimp_reads(extension))
-        return read_assimp(path, options);
+        return read_apart(read_assimp, "Assimp", path, options);
     return unknown_extension(path, extension, /* to_write= */ false);
 }
 

@@ -72,9 +72,10 @@ bool streams(const std::filesystem::path& path);
 /// Reads a scene. The extension chooses the reader, in any case and after a trailing .gz is taken
 /// off. A compressed file is recognised by its contents, whatever its name. Never throws on bad
 /// input: the Error is one sentence with file, line or byte, what was found, what was expected.
-/// Memory is bounded by what the file holds, not by what it claims. Polygons are cut into triangles
-/// in file order; a degenerate or non-finite triangle is kept (it is counted and dropped when a
-/// structure is built), so that prim numbers follow the file.
+/// Memory is bounded by what the file holds, not by what it claims. Assimp reads in a process of
+/// its own, so that its crashes are errors too. Polygons are cut into triangles in file order; a
+/// degenerate or non-finite triangle is kept (it is counted and dropped when a structure is built),
+/// so that prim numbers follow the file.
 Result<Scene> load(const std::filesystem::path& path, const ImportOptions& options = {});
 
 /// Writes the triangles of `scene` as .ply (one mesh, binary little endian, double positions where

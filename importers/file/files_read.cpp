@@ -18,10 +18,12 @@ FileStamp stamp_of(const std::filesystem::path& path) {
     return stamp;
 }
 
-void FilesRead::note(const std::filesystem::path& path) {
-    FileStamp stamp = stamp_of(path);
-    if (known_.insert(stamp.path).second)
-        stamps_.push_back(std::move(stamp));
+void FilesRead::add(FileStamp stamp) {
+    if (!known_.insert(stamp.path).second)
+        return;
+    if (seen_)
+        seen_(stamp);
+    stamps_.push_back(std::move(stamp));
 }
 
 } // namespace ovc

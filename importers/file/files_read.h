@@ -4,8 +4,10 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <unordered_set>
+#include <utility>
 #include <vector>
 
 namespace ovc {
@@ -27,10 +29,16 @@ FileStamp stamp_of(const std::filesystem::path& path);
 /// were read.
 class FilesRead {
 public:
-    void note(const std::filesystem::path& path);
+    FilesRead() = default;
+    /// seen: is told of each file, before it is read.
+    explicit FilesRead(std::function<void(const FileStamp&)> seen) : seen_(std::move(seen)) {}
+
+    void note(const std::filesystem::path& path) { add(stamp_of(path)); }
+    void add(FileStamp stamp);
     const std::vector<FileStamp>& stamps() const { return stamps_; }
 
 private:
+    std::function<void(const FileStamp&)> seen_;
     std::vector<FileStamp> stamps_;
     std::unordered_set<std::string> known_;
 };

@@ -44,6 +44,10 @@ Result<Done> write_scene_file(const Scene& scene, const TriangleStore& store,
                               const Provenance& from, const SaveLevels& save_levels,
                               const std::filesystem::path& path);
 
+/// Writes the file of a scene in memory, without levels, to a sink. Returns false where the sink
+/// wanted no more.
+bool write_scene(const Scene& scene, const Provenance& from, const ByteSink& sink);
+
 /// The front of a scene file is everything but the levels. It lies in an unfinished file until they
 /// are written behind it, perhaps by a later run of the program.
 struct SceneFront {

@@ -15,7 +15,7 @@ namespace ovc {
 inline constexpr std::string_view kSceneKind = "ovc scene";
 /// Raise it with every change of scene_fields.h, and when an importer makes another scene of the
 /// same file.
-inline constexpr uint32_t kSceneVersion = 27;
+inline constexpr uint32_t kSceneVersion = 28;
 
 /// The checksums of the blocks (core/file/file_blocks.h) of corners, normals and texture
 /// coordinates.

@@ -73,10 +73,9 @@ std::vector<uint64_t> runs_of(std::span<const MeshExtent> extents, uint64_t Mesh
 
 /// Writes everything but the levels.
 Result<Done> write_front(const Scene& scene, const LargeParts& parts, const Provenance& from,
-                         const OutputFile& out, ArchiveWriter& writer) {
+                         const ByteSink& sink, ArchiveWriter& writer) {
     ByteWriter fields;
     fields(scene, scene.meshes, from.request, from.files, from.warnings);
-    const ByteSink sink = sink_to(writer, out);
     writer.part<std::byte>("fields", fields.bytes());
     writer.part<MeshExtent>("extents", parts.extents);
     std::array<std::vector<uint64_t>, 3> sums;
@@ -120,9 +119,27 @@ Result<Done> write_file(const Scene& scene, const LargeParts& parts, const Prove
     if (!out)
         return out.error();
     ArchiveWriter writer(out->sink(), kSceneKind, kSceneVersion);
-    if (const Result<Done> done = write_front(scene, parts, from, *out, writer); !done)
+    const ByteSink sink = sink_to(writer, *out);
+    if (const Result<Done> done = write_front(scene, parts, from, sink, writer); !done)
         return done;
     return write_levels(save_levels, *out, writer);
+}
+
+/// The scene must outlive what is returned.
+LargeParts parts_of(const Scene& scene) {
+    LargeParts parts{extents_of(scene), {}, {}};
+    parts.write_corners = [&scene, extents = parts.extents](const ByteSink& sink) {
+        for (size_t m = 0; m < extents.size(); ++m)
+            if (extents[m].corners > 0)
+                sink(bytes_of(scene.soup.chunks[m].corners()));
+        return Done{};
+    };
+    parts.write_normals = [&scene](const ByteSink& sink) {
+        for (const MeshInfo& mesh : scene.meshes)
+            sink(bytes_of(std::span<const vec3>(mesh.normals)));
+        return Done{};
+    };
+    return parts;
 }
 
 LargeParts parts_of(const Scene& scene, const TriangleStore& store) {
@@ -143,19 +160,16 @@ LargeParts parts_of(const Scene& scene, const TriangleStore& store) {
 
 Result<Done> write_scene_file(const Scene& scene, const Provenance& from,
                               const SaveLevels& save_levels, const std::filesystem::path& path) {
-    LargeParts parts{extents_of(scene), {}, {}};
-    parts.write_corners = [&](const ByteSink& sink) {
-        for (size_t m = 0; m < parts.extents.size(); ++m)
-            if (parts.extents[m].corners > 0)
-                sink(bytes_of(scene.soup.chunks[m].corners()));
-        return Done{};
+    return write_file(scene, parts_of(scene), from, save_levels, path);
+}
+
+bool write_scene(const Scene& scene, const Provenance& from, const ByteSink& sink) {
+    ArchiveWriter writer(sink, kSceneKind, kSceneVersion);
+    const auto write = [&](Bytes bytes) {
+        writer.write(bytes);
+        return true;
     };
-    parts.write_normals = [&](const ByteSink& sink) {
-        for (const MeshInfo& mesh : scene.meshes)
-            sink(bytes_of(std::span<const vec3>(mesh.normals)));
-        return Done{};
-    };
-    return write_file(scene, parts, from, save_levels, path);
+    return write_front(scene, parts_of(scene), from, write, writer) && writer.finish();
 }
 
 Result<Done> write_scene_file(const Scene& scene, const TriangleStore& store,
@@ -167,7 +181,8 @@ Result<Done> write_scene_file(const Scene& scene, const TriangleStore& store,
 Result<std::vector<ArchivePart>> write_front(const Scene& scene, const TriangleStore& store,
                                              const Provenance& from, OutputFile& out) {
     ArchiveWriter writer(out.sink(), kSceneKind, kSceneVersion);
-    if (const Result<Done> done = write_front(scene, parts_of(scene, store), from, out, writer);
+    const ByteSink sink = sink_to(writer, out);
+    if (const Result<Done> done = write_front(scene, parts_of(scene, store), from, sink, writer);
         !done)
         return done.error();
     std::vector<ArchivePart> parts = writer.end_part();
