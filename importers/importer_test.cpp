@@ -476,6 +476,85 @@ TEST(Assimp, WhatIsLeftOutIsSaid) {
                             "a.gltf: 1 animation left out: what moves is shown at rest"}));
 }
 
+/// Returns a COLLADA file of a triangle, whose materials have these elements.
+std::string collada_of(const std::vector<std::string>& materials) {
+    std::string effects, names, triangles, bindings;
+    for (size_t i = 0; i < materials.size(); ++i) {
+        const std::string n = std::to_string(i);
+        effects += "<effect id=\"e" + n + "\"><profile_COMMON><technique sid=\"c\"><lambert>" +
+                   materials[i] + "</lambert></technique></profile_COMMON></effect>";
+        names += "<material id=\"m" + n + "\"><instance_effect url=\"#e" + n + "\"/></material>";
+        triangles += "<triangles count=\"1\" material=\"s" + n +
+                     "\"><input semantic=\"VERTEX\" source=\"#v\" offset=\"0\"/><p>0 1 2</p>"
+                     "</triangles>";
+        bindings += "<instance_material symbol=\"s" + n + "\" target=\"#m" + n + "\"/>";
+    }
+    return "<?xml version=\"1.0\"?><COLLADA xmlns=\"http://www.collada.org/2005/11/"
+           "COLLADASchema\" version=\"1.4.1\"><asset><up_axis>Y_UP</up_axis></asset>"
+           "<library_effects>" +
+           effects + "</library_effects><library_materials>" + names +
+           "</library_materials><library_geometries><geometry id=\"g\"><mesh><source id=\"p\">"
+           "<float_array id=\"a\" count=\"9\">0 0 0 1 0 0 0 1 0</float_array><technique_common>"
+           "<accessor source=\"#a\" count=\"3\" stride=\"3\"><param name=\"X\" type=\"float\"/>"
+           "<param name=\"Y\" type=\"float\"/><param name=\"Z\" type=\"float\"/></accessor>"
+           "</technique_common></source><vertices id=\"v\"><input semantic=\"POSITION\" "
+           "source=\"#p\"/></vertices>" +
+           triangles +
+           "</mesh></geometry></library_geometries><library_visual_scenes><visual_scene id=\"s\">"
+           "<node id=\"n\"><instance_geometry url=\"#g\"><bind_material><technique_common>" +
+           bindings +
+           "</technique_common></bind_material></instance_geometry></node></visual_scene>"
+           "</library_visual_scenes><scene><instance_visual_scene url=\"#s\"/></scene></COLLADA>";
+}
+
+TEST(Assimp, ColladasTransparencyIsReadBothWays) {
+    const TestFolder folder;
+    const auto passes = [&](const std::vector<std::string>& numbers) {
+        std::vector<std::string> materials;
+        for (const std::string& number : numbers)
+            materials.push_back("<transparent><color>1 1 1 1</color></transparent><transparency>"
+                                "<float>" +
+                                number + "</float></transparency>");
+        const auto scene = load(folder.write("a.dae", collada_of(materials)));
+        EXPECT_TRUE(scene) << scene.error().message;
+        std::vector<float> shares;
+        for (const MeshInfo& mesh : scene->meshes)
+            shares.push_back(scene->materials[mesh.material].transmission);
+        return shares;
+    };
+    EXPECT_EQ(passes({"1", "0.25"}), (std::vector<float>{0, 0.75f}));
+    EXPECT_EQ(passes({"0", "0.25"}), (std::vector<float>{0, 0.25f}))
+        << "a file does not mean what nobody sees";
+}
+
+TEST(Assimp, OtherFormatsThanGltfSendOutLight) {
+    const TestFolder folder;
+    const auto scene = load(folder.write(
+        "a.dae", collada_of({"<emission><color>0.5 2 0 1</color></emission><diffuse><color>1 0 0 1"
+                             "</color></diffuse>",
+                             "<diffuse><color>1 0 0 1</color></diffuse>"})));
+    ASSERT_TRUE(scene) << scene.error().message;
+    const auto& optics = scene->materials[scene->meshes.at(0).material].optics;
+    ASSERT_TRUE(optics);
+    EXPECT_EQ(optics->emission, vec3(0.5f, 2, 0));
+    EXPECT_EQ(optics->diffuse, vec3(1, 0, 0));
+    EXPECT_FALSE(scene->materials[scene->meshes.at(1).material].optics);
+}
+
+TEST(Assimp, SkinsOfOtherFormatsThanGltfAreSaid) {
+    const TestFolder folder;
+    std::vector<std::string> warnings;
+    const auto scene = load(
+        folder.write("a.x", "xof 0303txt 0032\nFrame Root { Mesh m { 3; 0;0;0;, 1;0;0;, 0;1;0;; 1; "
+                            "3;0,1,2;; SkinWeights { \"Root\"; 3; 0,1,2; 1.0,1.0,1.0; 1.0,0.0,0.0,"
+                            "0.0,0.0,1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,0.0,0.0,1.0;; } } }\n"),
+        gather(warnings));
+    EXPECT_EQ(triangles_of(scene).size(), 1u);
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_EQ(folder.plain(warnings[0]),
+              "a.x: 1 skin left out: meshes are shown in their rest form");
+}
+
 TEST(Assimp, AgreesOnPlyAndObj) {
     const TestFolder folder;
     folder.write(

@@ -9,10 +9,12 @@
 
 #include <algorithm>
 #include <bit>
+#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <iterator>
 #include <limits>
+#include <optional>
 
 namespace ovc {
 
@@ -118,7 +120,28 @@ std::string found(std::string_view word, std::string_view what) {
 }
 
 std::string counted(uint64_t count, std::string_view noun) {
-    return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+    const std::string_view of = noun.substr(std::min(noun.find(" of "), noun.size()));
+    noun.remove_suffix(of.size());
+    return fmt::format("{} {}{}{}", count, noun, count == 1 ? "" : "s", of);
+}
+
+static std::optional<char> byte_of(std::string_view digits) {
+    unsigned value = 0;
+    const char* const last = digits.data() + digits.size();
+    const auto [end, error] = std::from_chars(digits.data(), last, value, 16);
+    return error == std::errc() && end == last && value != 0 ? std::optional(char(value))
+                                                             : std::nullopt;
+}
+
+std::string decoded_uri(std::string_view uri) {
+    std::string plain;
+    for (size_t i = 0; i < uri.size(); ++i) {
+        const auto code =
+            uri[i] == '%' && i + 2 < uri.size() ? byte_of(uri.substr(i + 1, 2)) : std::nullopt;
+        plain += code ? *code : uri[i];
+        i += code ? 2 : 0;
+    }
+    return plain;
 }
 
 std::string listed(std::span<const std::string> items) {

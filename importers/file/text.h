@@ -96,6 +96,9 @@ std::string found(std::string_view word, std::string_view what = {});
 /// Returns "1 row", "2 rows".
 std::string counted(uint64_t count, std::string_view noun);
 
+/// Returns the name that a URI stands for: "a b.png" for "a%20b.png".
+std::string decoded_uri(std::string_view uri);
+
 /// Returns "a, b, c and 5 more": at most three in full.
 std::string listed(std::span<const std::string> items);
 

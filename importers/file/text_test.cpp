@@ -64,5 +64,17 @@ TEST(Text, ReadsNumbersOfOtherForms) {
     }
 }
 
+TEST(Text, CountsBeforeAnOf) {
+    EXPECT_EQ(counted(2, "light"), "2 lights");
+    EXPECT_EQ(counted(1, "set of vertex colors"), "1 set of vertex colors");
+    EXPECT_EQ(counted(2, "set of vertex colors"), "2 sets of vertex colors");
+}
+
+TEST(Text, UrisStandForNames) {
+    EXPECT_EQ(decoded_uri("a%20b.png"), "a b.png");
+    for (const char* plain : {"100%", "%2", "%zz.bin", "%00", ""})
+        EXPECT_EQ(decoded_uri(plain), plain);
+}
+
 } // namespace
 } // namespace ovc

@@ -21,6 +21,7 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <new>
 #include <numbers>
 #include <stdexcept>
 #include <string_view>
@@ -113,17 +114,29 @@ uint64_t other_faces(const aiScene& scene) {
     return others;
 }
 
-uint64_t colored_meshes(const aiScene& scene) {
-    uint64_t colored = 0;
-    for (unsigned m = 0; m < scene.mNumMeshes; ++m)
-        colored += scene.mMeshes[m]->HasVertexColors(0);
-    return colored;
+uint64_t count_meshes(const aiScene& scene, bool (*counts)(const aiMesh&)) {
+    return uint64_t(std::count_if(scene.mMeshes, scene.mMeshes + scene.mNumMeshes,
+                                  [&](const aiMesh* mesh) { return counts(*mesh); }));
+}
+
+bool is_colored(const aiMesh& mesh) {
+    return mesh.HasVertexColors(0);
+}
+
+bool is_skinned(const aiMesh& mesh) {
+    return mesh.HasBones();
+}
+
+bool is_morphed(const aiMesh& mesh) {
+    return std::any_of(mesh.mAnimMeshes, mesh.mAnimMeshes + mesh.mNumAnimMeshes,
+                       [](const aiAnimMesh* target) { return target->mWeight != 0; });
 }
 
 /// Returns a sentence for each kind of thing that the file has and the scene will not. textures:
 /// the names of the pictures that are not shown; lights: how many are left out.
 std::vector<std::string> left_out_of(const aiScene& found, bool has_camera,
                                      std::vector<std::string> textures, uint64_t lights) {
+    constexpr const char* kAtRest = ": meshes are shown in their rest form";
     std::vector<std::string> sentences;
     for (std::string& name : textures)
         name = ovc::quoted(name);
@@ -135,7 +148,9 @@ std::vector<std::string> left_out_of(const aiScene& found, bool has_camera,
     leave_out(found.mNumCameras - (has_camera ? 1 : 0), has_camera ? "more camera" : "camera");
     leave_out(lights, "light");
     leave_out(found.mNumAnimations, "animation", ": what moves is shown at rest");
-    leave_out(colored_meshes(found), "set of vertex colors");
+    leave_out(count_meshes(found, is_skinned), "skin", kAtRest);
+    leave_out(count_meshes(found, is_morphed), "set of morph weights", kAtRest);
+    leave_out(count_meshes(found, is_colored), "set of vertex colors");
     leave_out(other_faces(found), "face", ": they have fewer than three corners");
     return sentences;
 }
@@ -216,6 +231,16 @@ void drop_deleted_pictures(const Assimp::Importer& importer, const aiScene* foun
     scene->mNumTextures = 0;
 }
 
+/// Assimp catches what it throws; other exceptions it describes in words.
+void rethrow_bad_alloc(const std::exception_ptr& thrown) {
+    try {
+        std::rethrow_exception(thrown);
+    } catch (const std::bad_alloc&) {
+        throw;
+    } catch (...) {
+    }
+}
+
 } // namespace
 
 bool assimp_reads(std::string_view extension) {
@@ -240,6 +265,8 @@ Result<Scene> read_assimp(const std::filesystem::path& path, const ImportOptions
     } else {
         found = read(importer, *source, path);
     }
+    if (const std::exception_ptr& thrown = importer.GetException())
+        rethrow_bad_alloc(thrown);
     drop_deleted_pictures(importer, found);
     Scene scene;
     scene.name = path.stem().string();
@@ -270,6 +297,8 @@ Result<Scene> read_assimp(const std::filesystem::path& path, const ImportOptions
     if (scene.soup.triangle_count() == 0)
         say(options.log, LogLevel::Warning, source->error("it has no triangles").message);
     return scene;
+} catch (const std::bad_alloc&) {
+    throw; // a file may claim more than there is memory
 } catch (const std::exception& e) {
     return Error{fmt::format("{}: Assimp failed: {}", path.string(), e.what())};
 }

@@ -3,7 +3,10 @@
 // KHR_lights_punctual.
 #include "importers/mesh/assimp_look.h"
 
+#include "core/text/lower_case.h"
 #include "importers/file/picture_path.h"
+#include "importers/file/text.h"
+#include "importers/mesh/clear_optics.h"
 #include "importers/pbrt/look/area_lights.h"
 
 #include <assimp/GltfMaterial.h>
@@ -68,31 +71,25 @@ std::array<dvec3, 2> placement_of(const aiMaterial& source, aiTextureType type) 
     return {dvec3(c * sx, -s * sy, s * sy + ox), dvec3(s * sx, c * sy, 1 - c * sy - oy)};
 }
 
-std::optional<char> byte_of(std::string_view digits) {
-    unsigned value = 0;
-    const char* const last = digits.data() + digits.size();
-    const auto [end, error] = std::from_chars(digits.data(), last, value, 16);
-    return error == std::errc() && end == last && value != 0 ? std::optional(char(value))
-                                                             : std::nullopt;
+bool is_collada(const std::filesystem::path& file) {
+    const auto name = file.extension() == ".gz" ? file.stem() : file;
+    const std::string extension = lower_case(name.extension().string());
+    return extension == ".dae" || extension == ".zae";
 }
 
-/// Returns a name without the %20 of URIs.
-std::string decoded(const std::string& name) {
-    std::string plain;
-    for (size_t i = 0; i < name.size(); ++i) {
-        const auto code = name[i] == '%' && i + 2 < name.size()
-                              ? byte_of(std::string_view(name).substr(i + 1, 2))
-                              : std::nullopt;
-        plain += code ? *code : name[i];
-        i += code ? 2 : 0;
-    }
-    return plain;
+bool has_invisible_material(const aiScene& found) {
+    return std::any_of(
+        found.mMaterials, found.mMaterials + found.mNumMaterials,
+        [](const aiMaterial* each) { return number_of(*each, AI_MATKEY_OPACITY, 1) == 0; });
 }
 
 class Looks {
 public:
     Looks(const aiScene& found, const std::filesystem::path& file, Scene& scene)
-        : found_(found), file_(file), scene_(scene) {}
+        : found_(found),
+          file_(file),
+          scene_(scene),
+          opacity_is_transparency_(is_collada(file) && has_invisible_material(found)) {}
 
     AssimpMaterial add(const aiMaterial& source);
 
@@ -113,10 +110,14 @@ private:
     void add_optics(const aiMaterial& source, Material& material);
     void add_emission(const aiMaterial& source, const vec3& emission, Material& material);
     void add_holes(const aiMaterial& source, const Image& color, AssimpMaterial& to);
+    float opacity_of(const aiMaterial& source) const;
+    void let_light_through(const aiMaterial& source, bool has_holes, Material& material) const;
 
     const aiScene& found_;
     const std::filesystem::path& file_;
     Scene& scene_;
+    /// Some programs write <transparency> of COLLADA the other way round, and 0 for what is opaque.
+    const bool opacity_is_transparency_;
 };
 
 /// Finds a picture: "*0" is one within the file.
@@ -124,7 +125,7 @@ std::optional<uint32_t> Looks::picture_of(const std::string& name) {
     const std::string place = file_.string();
     const aiTexture* const within = found_.GetEmbeddedTexture(name.c_str());
     if (!within)
-        return add_picture(scene_, picture_path(file_.parent_path(), decoded(name)), place);
+        return add_picture(scene_, picture_path(file_.parent_path(), decoded_uri(name)), place);
     if (within->mHeight != 0) // texels without a format
         return std::nullopt;
     const uint32_t picture =
@@ -166,9 +167,12 @@ uint32_t Looks::add_image(const Image& image) {
     return add_texture(scene_, std::move(texture));
 }
 
-vec3 emission_of(const aiMaterial& source) {
-    return number_of(source, AI_MATKEY_EMISSIVE_INTENSITY, 1) *
-           color_of(source, AI_MATKEY_COLOR_EMISSIVE, vec3(0));
+/// Other formats than glTF have no factor for the picture.
+vec3 emission_of(const aiMaterial& source, bool is_gltf) {
+    const vec3 color = color_of(source, AI_MATKEY_COLOR_EMISSIVE, vec3(0));
+    if (!is_gltf && color == vec3(0) && source.GetTextureCount(aiTextureType_EMISSIVE) > 0)
+        return vec3(1);
+    return number_of(source, AI_MATKEY_EMISSIVE_INTENSITY, 1) * glm::max(color, vec3(0));
 }
 
 /// Sets glTF's metallic-roughness model for path tracing: roughness is the root of the width.
@@ -196,7 +200,7 @@ void Looks::add_optics(const aiMaterial& source, Material& material) {
     } else {
         maps.metallic = add_texture(scene_, plain_texture(vec3(metallic)));
     }
-    add_emission(source, emission_of(source), material);
+    add_emission(source, emission_of(source, /* is_gltf= */ true), material);
 }
 
 /// Lets a surface that has optics send out light.
@@ -215,17 +219,6 @@ void Looks::add_emission(const aiMaterial& source, const vec3& emission, Materia
             material.maps.emplace();
         material.maps->emission = add_image(*image);
     }
-}
-
-/// Returns a surface that lets light through as optics.
-Optics clear_optics(const Material& material) {
-    const float share = material.transmission;
-    Optics optics;
-    optics.diffuse = (1 - share) * material.color;
-    optics.boundary = material.ior == 1 ? Optics::Boundary::None : Optics::Boundary::Dielectric;
-    optics.ior = material.ior;
-    optics.through = share * material.filter;
-    return optics;
 }
 
 /// Returns glTF's alpha mode; nothing for other formats.
@@ -259,16 +252,17 @@ void Looks::add_holes(const aiMaterial& source, const Image& color, AssimpMateri
 
 /// Returns the share of light that a surface without holes stops: of glTF all except for BLEND, and
 /// none below the cutoff of a MASK.
-float opacity_of(const aiMaterial& source) {
+float Looks::opacity_of(const aiMaterial& source) const {
     const std::string mode = alpha_mode_of(source);
-    const float alpha = number_of(source, AI_MATKEY_OPACITY, 1);
+    const float stated = number_of(source, AI_MATKEY_OPACITY, 1);
+    const float alpha = opacity_is_transparency_ ? 1 - stated : stated;
     if (mode == "MASK")
         return alpha < alpha_cutoff_of(source) ? 0.0f : 1.0f;
     return mode == "OPAQUE" ? 1.0f : alpha;
 }
 
 /// The base color tints glTF's transmission, but not the opacity that other formats know.
-void let_light_through(const aiMaterial& source, bool has_holes, Material& material) {
+void Looks::let_light_through(const aiMaterial& source, bool has_holes, Material& material) const {
     const float factor = number_of(source, AI_MATKEY_TRANSMISSION_FACTOR, 0);
     const float share = factor > 0 ? factor : 1 - (has_holes ? 1 : opacity_of(source));
     if (!(share > 0))
@@ -306,9 +300,9 @@ AssimpMaterial Looks::add(const aiMaterial& source) {
     const bool is_gltf = source.Get(AI_MATKEY_METALLIC_FACTOR, metallic) == AI_SUCCESS;
     if (is_gltf && material.transmission == 0)
         add_optics(source, material);
-    else if (is_gltf && emission_of(source) != vec3(0)) {
+    else if (const vec3 emission = emission_of(source, is_gltf); emission != vec3(0)) {
         material.optics = clear_optics(material);
-        add_emission(source, emission_of(source), material);
+        add_emission(source, emission, material);
     }
     scene_.materials.push_back(std::move(material));
     return result;

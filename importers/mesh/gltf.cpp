@@ -28,13 +28,15 @@ using Json = nlohmann::json;
 /// The max depth of the JSON, whose readers are recursive; files have about ten levels.
 constexpr int kMaxDepth = 200;
 
-/// The extensions that are shown. assimp_look.cpp reads what Assimp makes of them.
-constexpr std::string_view kShown[] = {"KHR_lights_punctual", "KHR_materials_ior",
+/// The extensions that are shown. assimp_look.cpp reads what Assimp makes of them. Assimp says
+/// where it was built without Draco.
+constexpr std::string_view kDraco = "KHR_draco_mesh_compression";
+constexpr std::string_view kShown[] = {kDraco, "KHR_lights_punctual", "KHR_materials_ior",
                                        "KHR_materials_transmission", "KHR_texture_transform"};
 
 /// The extensions without which a file that does not require them means the same.
-constexpr std::string_view kNeedless[] = {"EXT_meshopt_compression", "KHR_draco_mesh_compression",
-                                          "KHR_mesh_quantization", "KHR_xmp_json_ld"};
+constexpr std::string_view kNeedless[] = {"EXT_meshopt_compression", "KHR_mesh_quantization",
+                                          "KHR_xmp_json_ld"};
 
 bool is_among(std::string_view name, std::span<const std::string_view> names) {
     return std::ranges::find(names, name) != names.end();
@@ -124,7 +126,8 @@ const Json& array(const Json& json, const char* name) {
     return at != json.end() && at->is_array() ? *at : none;
 }
 
-constexpr int kFloat = 5126; // a componentType
+constexpr int kUnsigned16 = 5123, kFloat = 5126; // a componentType each
+constexpr uint64_t kMaxUnsigned16 = 65535;
 
 /// Returns the accessor of that index, or null if the file has none there.
 const Json* accessor_at(const Json& gltf, const Json& index) {
@@ -137,6 +140,11 @@ const Json* accessor_at(const Json& gltf, const Json& index) {
 
 bool is_of_floats(const Json& accessor) {
     return accessor.value("componentType", Json()) == kFloat;
+}
+
+/// Returns the value at `path`, or null if there is none.
+Json* value_at(Json& json, const Json::json_pointer& path) {
+    return json.contains(path) ? &json[path] : nullptr;
 }
 
 /// Parts of a file that are not shown.
@@ -156,6 +164,8 @@ public:
     /// Takes it out of the file, and returns a sentence on each kind.
     std::vector<std::string> take_out() {
         name_extensions();
+        if (const size_t scenes = array(gltf_, "scenes").size(); scenes > 1)
+            count(scenes - 1, "more scene");
         count(array(gltf_, "animations").size(), "animation", ": what moves is shown at rest");
         gltf_.erase("animations");
         for (const char* name : {"nodes", "meshes"})
@@ -233,11 +243,30 @@ private:
                 is_even && (!name.starts_with("TEXCOORD_") || !accessor || is_of_floats(*accessor));
         }
         uneven_ += !is_even;
-        for (auto at = attributes.begin(); at != attributes.end();) {
-            const bool stays = at.key() == "POSITION" || at.key() == "NORMAL" ||
-                               (is_even && at.key().starts_with("TEXCOORD_"));
-            at = stays ? std::next(at) : attributes.erase(at);
+        const auto take_out_attributes = [&](Json& of) {
+            for (auto at = of.begin(); at != of.end();) {
+                const bool stays = at.key() == "POSITION" || at.key() == "NORMAL" ||
+                                   (is_even && at.key().starts_with("TEXCOORD_"));
+                at = stays ? std::next(at) : of.erase(at);
+            }
+        };
+        take_out_attributes(attributes);
+        const Json::json_pointer draco = Json::json_pointer("/extensions") / std::string(kDraco);
+        if (Json* const packed = value_at(primitive, draco / "attributes");
+            packed && packed->is_object()) {
+            take_out_attributes(*packed);
+            shorten_indices(primitive);
         }
+    }
+
+    /// Assimp 5.2 loses what Draco unpacks as indices of 32 bits.
+    void shorten_indices(Json& primitive) {
+        Json* const positions = value_at(primitive, Json::json_pointer("/attributes/POSITION"));
+        Json* const indices = value_at(primitive, Json::json_pointer("/indices"));
+        const Json* const vertices = positions ? accessor_at(gltf_, *positions) : nullptr;
+        if (vertices && indices && accessor_at(gltf_, *indices) &&
+            vertices->value("count", uint64_t(0)) <= kMaxUnsigned16 + 1)
+            gltf_["accessors"][indices->get<size_t>()]["componentType"] = kUnsigned16;
     }
 
     Json& gltf_;
@@ -263,9 +292,30 @@ std::optional<std::string> uneven_vertex(const Json& gltf) {
     return std::nullopt;
 }
 
-/// Returns the value at `path`, or null if there is none.
-Json* value_at(Json& json, const Json::json_pointer& path) {
-    return json.contains(path) ? &json[path] : nullptr;
+/// Decodes the names of files, which are URIs: Assimp opens them as they stand.
+void name_files(Json& gltf) {
+    Json* const buffers = value_at(gltf, Json::json_pointer("/buffers"));
+    for (size_t b = 0; buffers && buffers->is_array() && b < buffers->size(); ++b)
+        if (Json* const uri = value_at((*buffers)[b], Json::json_pointer("/uri"));
+            uri && uri->is_string() && !uri->get<std::string>().starts_with("data:"))
+            *uri = decoded_uri(uri->get<std::string>());
+}
+
+/// Shows all nodes of a file that has no scene: Assimp refuses it.
+void make_scene(Json& gltf) {
+    if (!array(gltf, "scenes").empty())
+        return;
+    std::vector<bool> is_child(array(gltf, "nodes").size());
+    for (const Json& node : array(gltf, "nodes"))
+        for (const Json& child : array(node, "children"))
+            if (child.is_number_unsigned() && child.get<uint64_t>() < is_child.size())
+                is_child[child.get<size_t>()] = true;
+    Json roots = Json::array();
+    for (size_t n = 0; n < is_child.size(); ++n)
+        if (!is_child[n])
+            roots.push_back(n);
+    gltf["scenes"] = Json::array({{{"nodes", std::move(roots)}}});
+    gltf["scene"] = 0;
 }
 
 /// Gives each node a name of its own, and a camera and a light of its own where others have the
@@ -336,6 +386,8 @@ Result<GltfFile> read_gltf_file(Source& source) {
         return source.error(*fault);
     file.left_out = omissions.take_out();
     tell_nodes_apart(*gltf);
+    name_files(*gltf);
+    make_scene(*gltf);
     std::string json = gltf->dump();
     file.bytes = file.is_binary ? with_json(all, at, std::move(json)) : std::move(json);
     return file;

@@ -334,13 +334,60 @@ TEST(Gltf, DataThatLiesElsewhereIsAnError) {
 TEST(Gltf, ExtensionsThatAreNotShownAreNamed) {
     const std::string required = ",\"extensionsRequired\":[\"KHR_texture_transform\",\"X_y\"]";
     EXPECT_EQ(failure_of(gltf_of("{}", required)),
-              "a.gltf: found the required extension 'X_y', expected none but KHR_lights_punctual, "
-              "KHR_materials_ior, KHR_materials_transmission, KHR_texture_transform");
+              "a.gltf: found the required extension 'X_y', expected none but "
+              "KHR_draco_mesh_compression, KHR_lights_punctual, KHR_materials_ior, "
+              "KHR_materials_transmission, KHR_texture_transform");
     const ReadGltf read =
         read_gltf(gltf_of("{\"extensions\":{\"KHR_materials_ior\":{},\"KHR_materials_unlit\":{}}}",
                           ",\"extensionsRequired\":[\"KHR_materials_unlit\"]"));
     EXPECT_THAT(read.warnings, testing::ElementsAre(testing::HasSubstr(
                                    "the extension 'KHR_materials_unlit' left out")));
+}
+
+TEST(Gltf, NamesOfFilesAreUris) {
+    const TestFolder folder;
+    folder.write("a b.bin", std::string(60, '\0'));
+    std::string text = gltf_of("{}");
+    const size_t data = text.find("data:application");
+    text.replace(data, text.find('"', data) - data, "a%20b.bin");
+    folder.write("a.gltf", text);
+    EXPECT_EQ(folder.failure("a.gltf"), "1 triangles");
+}
+
+TEST(Gltf, AFileWithoutASceneShowsAllItsNodes) {
+    const std::string nodes = "{\"mesh\":0},{\"children\":[0]},{\"mesh\":0}";
+    EXPECT_EQ(failure_of(with(gltf_of("{}", "", nodes), "\"scenes\"", "\"no\"")), "2 triangles");
+    const ReadGltf read = read_gltf(with(gltf_of("{}", "", nodes), "\"scenes\":[",
+                                         "\"scenes\":[{\"nodes\":[1,2]},{\"nodes\":[2]},"));
+    EXPECT_EQ(read.scene.soup.triangle_count(), 2u);
+    EXPECT_THAT(read.warnings, testing::ElementsAre(testing::HasSubstr("2 more scenes left out")));
+}
+
+/// The data is that of draco_encoder for a triangle. Assimp may have been built without Draco.
+TEST(Gltf, DracoIsUnpackedWithIndicesOf32Bits) {
+    const std::string text =
+        "{\"asset\":{\"version\":\"2.0\"},\"extensionsRequired\":[\"KHR_draco_mesh_compression\"],"
+        "\"buffers\":[{\"byteLength\":61,\"uri\":\"data:application/octet-stream;base64,"
+        "RFJBQ08CAgEAAAABAwEAAQIBAQAJAwAAAAAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAAAAAAIA/"
+        "AAAAAA==\"}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":61}],\"accessors\":["
+        "{\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"},"
+        "{\"componentType\":5125,\"count\":3,\"type\":\"SCALAR\"},"
+        "{\"componentType\":5121,\"count\":3,\"type\":\"VEC4\"}],"
+        "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"JOINTS_0\":2},"
+        "\"indices\":1,\"extensions\":{\"KHR_draco_mesh_compression\":{\"bufferView\":0,"
+        "\"attributes\":{\"POSITION\":0,\"JOINTS_0\":1}}}}]}],"
+        "\"nodes\":[{\"mesh\":0}],\"scenes\":[{\"nodes\":[0]}],\"scene\":0}";
+    const TestFolder folder;
+    const Result<Scene> scene = load(folder.write("a.gltf", text));
+    if (!scene && scene.error().message.ends_with("Draco mesh compression not supported."))
+        GTEST_SKIP() << "this Assimp has no Draco";
+    ASSERT_TRUE(scene) << scene.error().message;
+    ASSERT_EQ(scene->soup.triangle_count(), 1u);
+    Box bounds;
+    for (const dvec3& corner : scene->soup.triangle({0, 0}))
+        bounds.add(corner);
+    EXPECT_EQ(bounds.lo, dvec3(0));
+    EXPECT_EQ(bounds.hi, dvec3(1, 1, 0));
 }
 
 TEST(Gltf, VertexColorsAndUnevenTextureCoordinatesAreSaid) {
