@@ -41,10 +41,10 @@ struct Entry {
     double ior = 1;
     int illumination = 0;
 
-    /// Returns the share of the unmirrored light that passes through. Programs write Tr both ways
-    /// round, so d has the last word. The format scales by Tf alone; today's programs leave that
-    /// out and write d.
-    float through() const {
+    /// Returns the share of the unmirrored light that passes through glass. Programs write Tr both
+    /// ways round, so d has the last word. The format scales by Tf alone; today's programs leave
+    /// that out and write d.
+    float through_glass() const {
         const bool stated = dissolve || transparency;
         const float opaque = dissolve ? *dissolve : 1 - transparency.value_or(0);
         if (opaque < 1)
@@ -52,14 +52,23 @@ struct Entry {
         return filter || !stated ? 1.0f : 0.0f;
     }
 
+    /// Returns the share that d lets through in all models. Programs that write Tr alone mean an
+    /// opaque surface by 1.
+    float dissolved() const {
+        if (dissolve)
+            return std::clamp(1 - *dissolve, 0.0f, 1.0f);
+        return transparency && *transparency < 1 ? std::max(*transparency, 0.0f) : 0.0f;
+    }
+
     void finish() {
         const float mean = (specular.x + specular.y + specular.z) / 3;
         Material& material = read.material;
         material.mirror = reflects(illumination) ? mean : 0;
-        if (!transmits(illumination))
-            return;
-        material.transmission = (1 - material.mirror) * through();
+        const bool is_glass = transmits(illumination);
+        material.transmission = (1 - material.mirror) * (is_glass ? through_glass() : dissolved());
         assert(material.transmission >= 0 && material.transmission <= 1);
+        if (!is_glass)
+            return;
         material.filter = filter.value_or(vec3(1));
         if (refracts(illumination) && is_usable_ior(ior))
             material.ior = ior;
@@ -70,18 +79,6 @@ struct Entry {
 bool is_texture(std::string_view keyword) {
     return (keyword.starts_with("map_") && keyword != "map_aat") || keyword == "bump" ||
            keyword == "disp" || keyword == "decal" || keyword == "refl" || keyword == "norm";
-}
-
-void note_texture(std::string_view keyword, std::string_view rest, uint64_t line,
-                  LibraryMaterial& of) {
-    const MtlTexture texture = parse_mtl_texture(keyword, rest, line);
-    if (is_shown(texture)) {
-        of.shown.push_back(texture);
-        return;
-    }
-    std::string item = fmt::format("{} {}", keyword, ovc::quoted(texture.file));
-    if (std::find(of.textures.begin(), of.textures.end(), item) == of.textures.end())
-        of.textures.push_back(std::move(item));
 }
 
 /// Statements of the format that mean nothing here.
@@ -130,7 +127,7 @@ private:
         else if (keyword == "illum")
             entry.illumination = int(std::clamp(number(keyword, rest), 0.0, 100.0));
         else if (is_texture(keyword))
-            note_texture(keyword, rest, source_.line_number(), entry.read);
+            read_texture(keyword, rest, entry.read);
         else if (!is_ignored(keyword))
             leave_out(std::string(keyword), fmt::format("statements {}", ovc::quoted(keyword)));
     }
@@ -152,6 +149,19 @@ private:
     std::optional<vec3> color(std::string_view keyword, std::string_view rest) {
         const std::optional<vec3> any = numbers(keyword, rest);
         return any ? std::optional(glm::min(*any, vec3(1))) : std::nullopt;
+    }
+
+    void read_texture(std::string_view keyword, std::string_view rest, LibraryMaterial& of) {
+        const MtlTexture texture = parse_mtl_texture(keyword, rest, source_.line_number());
+        if (texture.is_turbulent)
+            leave_out("-t", "the option '-t'");
+        if (is_shown(texture)) {
+            of.shown.push_back(texture);
+            return;
+        }
+        std::string item = fmt::format("{} {}", keyword, ovc::quoted(texture.file));
+        if (std::find(of.textures.begin(), of.textures.end(), item) == of.textures.end())
+            of.textures.push_back(std::move(item));
     }
 
     /// "d -halo 0.5" asks for what d does, less in the middle.

@@ -73,6 +73,8 @@ void take_option(const Option& option, std::string_view& text, MtlTexture& textu
         texture.scale = {n.at(0, 1), n.at(1, 1)};
     else if (option.name == "-o")
         texture.offset = {n.at(0, 0), n.at(1, 0)};
+    else if (option.name == "-t")
+        texture.is_turbulent = n.at(0, 0) != 0 || n.at(1, 0) != 0;
     else if (option.name == "-mm") {
         texture.base = n.at(0, 0);
         texture.gain = n.at(1, 1);

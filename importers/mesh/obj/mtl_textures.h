@@ -21,6 +21,7 @@ struct MtlTexture {
     bool clamp = false;        // -clamp
     double base = 0, gain = 1; // -mm: of its values
     double bump = 1;           // -bm
+    bool is_turbulent = false; // -t, which is not shown
     char channel = 0;          // -imfchan: r, g, b, m, l or z; 0: the statement's own
 };
 

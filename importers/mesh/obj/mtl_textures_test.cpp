@@ -99,7 +99,12 @@ TEST(MtlTextures, KeMakesLight) {
     EXPECT_TRUE(lamp.optics->two_sided);
     EXPECT_EQ(material("Ke 1\nKs 0.25\nillum 3\n").optics->reflection, vec3(0.25f));
     EXPECT_FALSE(material("Ke 0 0 0\n").optics);
-    EXPECT_FALSE(material("Ke 1\nd 0.5\nillum 4\n").optics) << "left out, which is said";
+    const Material glass = material("Kd 1 0.5 0\nKe 1\nd 0.25\nillum 4\nTf 1 0 0\n");
+    ASSERT_TRUE(glass.optics);
+    EXPECT_EQ(glass.optics->emission, vec3(1));
+    EXPECT_EQ(glass.optics->diffuse, 0.25f * vec3(1, 0.5f, 0));
+    EXPECT_EQ(glass.optics->through, 0.75f * vec3(1, 0, 0));
+    EXPECT_FALSE(material("Ke 1\nKs 0.5\nd 0.5\nillum 4\n").optics) << "left out, which is said";
     const Material shown = material("Ke 0 0 0\nmap_Ke a.png\nmap_Ks b.png\n");
     EXPECT_EQ(shown.optics->emission, vec3(1)) << "black leaves the picture alone";
     ASSERT_TRUE(shown.maps);

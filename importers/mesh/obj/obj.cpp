@@ -117,6 +117,7 @@ private:
     void note_colors(std::string_view rest);
     bool read_normal(std::string_view rest);
     bool read_uv(std::string_view rest);
+    bool read_smoothing(std::string_view rest);
     bool read_face(std::string_view rest);
     bool read_corner(std::string_view word);
     bool read_index(std::string_view word, std::string_view text, size_t count, size_t& index);
@@ -158,6 +159,7 @@ private:
     std::unordered_map<std::string, size_t> mesh_ids_;
     size_t mesh_ = 0;
     bool has_colors_ = false; // some vertex has
+    bool is_smooth_ = false;  // faces are in a smoothing group
     bool mesh_known_ = false; // becomes false when object, group or material changes
     uint64_t waiting_ = 0;    // corners in all meshes that the sink has not got
 };
@@ -189,9 +191,9 @@ bool ObjReader::read_line(std::string_view line) {
         return read_normal(line);
     if (keyword == "vt")
         return read_uv(line);
-    if (!keyword.empty() && keyword[0] != '#' && keyword != "s")
-        return read_other(keyword, line);
-    return true;
+    if (keyword == "s")
+        return read_smoothing(line);
+    return keyword.empty() || keyword[0] == '#' || read_other(keyword, line);
 }
 
 bool ObjReader::read_other(std::string_view keyword, std::string_view rest) {
@@ -202,8 +204,7 @@ bool ObjReader::read_other(std::string_view keyword, std::string_view rest) {
         group_ = keyword == "g" ? name : "";
         mesh_known_ = false;
     } else if (keyword == "usemtl") {
-        material_ = materials_.find(trimmed(rest),
-                                    [&](auto& kind, auto& sentence) { warn(kind, sentence); });
+        material_ = materials_.find(trimmed(rest), source_.line_number());
         mesh_known_ = false;
     } else if (keyword == "mtllib") {
         const Result<Done> done = materials_.read_libraries(
@@ -275,6 +276,12 @@ bool ObjReader::read_uv(std::string_view rest) {
     const float u = parse_float(next_word(rest)).value_or(0);
     const float v = parse_float(next_word(rest)).value_or(0);
     uv_.push_back({std::isfinite(u) ? u : 0, std::isfinite(v) ? v : 0});
+    return true;
+}
+
+bool ObjReader::read_smoothing(std::string_view rest) {
+    const std::string_view group = next_word(rest);
+    is_smooth_ = !group.empty() && group != "off" && group != "0";
     return true;
 }
 
@@ -374,6 +381,8 @@ bool ObjReader::add_polygon() {
         origin_ = chunk_origin(bounds_, kFar);
     if (!find_mesh())
         return false;
+    if (is_smooth_ && !polygon_[0].has_normal)
+        warn("s", "smoothing groups left out: faces without normals are flat");
     Mesh& to = meshes_[mesh_];
     const size_t before = to.corners.size();
     if (polygon_.size() == 3)

@@ -3,6 +3,7 @@
 
 #include "importers/file/source.h"
 #include "importers/file/text.h"
+#include "importers/mesh/clear_optics.h"
 
 #include <fmt/format.h>
 
@@ -17,16 +18,15 @@ static bool emits(const LibraryMaterial& read) {
            });
 }
 
-/// Optics have no mirror beside glass, so that only opaque surfaces shine.
-static bool is_opaque(const Material& material) {
-    return material.transmission == 0;
+/// Optics have no mirror beside glass.
+static bool can_shine(const Material& material) {
+    return material.transmission == 0 || material.mirror == 0;
 }
 
 /// Lets a surface send out light. emission: Ke, which multiplies map_Ke, unless it
 /// is black: programs write 0 0 0 where a picture is meant to stand alone.
 static void let_shine(const vec3& emission, Material& material) {
-    Optics& optics = material.optics.emplace();
-    optics.diffuse = material.color;
+    Optics& optics = material.optics.emplace(clear_optics(material));
     if (material.mirror > 0) {
         optics.boundary = Optics::Boundary::Mirror;
         optics.reflection = vec3(material.mirror);
@@ -81,22 +81,20 @@ bool ObjMaterials::read_library(std::string_view name, bool has_uv) {
         const auto [at, is_new] = numbers_.try_emplace(called, uint32_t(materials_.size()));
         if (is_new)
             materials_.emplace_back();
-        else if (materials_[at->second].material != Material{called})
-            continue; // the name is defined; without a definition its usemtl preceded its mtllib
+        else if (materials_[at->second].missing_at == 0)
+            continue; // the first definition counts
         materials_[at->second] = std::move(read);
     }
     return true;
 }
 
-uint32_t ObjMaterials::find(std::string_view name, const Warn& warn) {
+uint32_t ObjMaterials::find(std::string_view name, uint64_t line) {
     if (!numbers_.contains(std::string(name)))
         name = trimmed(without_comment(name));
     const auto [at, is_new] = numbers_.try_emplace(std::string(name), uint32_t(materials_.size()));
     if (is_new) {
         materials_.push_back({Material{std::string(name)}});
-        warn("usemtl",
-             fmt::format("no material {}: it becomes grey, and so do others that are missing",
-                         quoted(name)));
+        materials_.back().missing_at = line;
     }
     return at->second;
 }
@@ -109,12 +107,22 @@ void ObjMaterials::say_left_out(const std::vector<bool>& used, const Source& sou
         for (const std::string& texture : materials_[m].textures)
             if (std::find(textures.begin(), textures.end(), texture) == textures.end())
                 textures.push_back(texture);
-        if (emits(materials_[m]) && !is_opaque(materials_[m].material))
+        if (emits(materials_[m]) && !can_shine(materials_[m].material))
             emitters.push_back(ovc::quoted(materials_[m].material.name));
     }
     const auto warn_of = [&](const std::string& sentence) {
         say(log_, LogLevel::Warning, source.error(sentence).message);
     };
+    const auto missing = std::ranges::find_if(
+        materials_, [](const LibraryMaterial& m) { return m.missing_at != 0; });
+    if (missing != materials_.end())
+        say(log_, LogLevel::Warning,
+            source
+                .error_at_line(missing->missing_at,
+                               fmt::format("no material {}: it becomes grey, and so do others that "
+                                           "are missing",
+                                           ovc::quoted(missing->material.name)))
+                .message);
     if (!textures.empty())
         warn_of(fmt::format("{} of its materials left out: {}", counted(textures.size(), "texture"),
                             listed(textures)));
@@ -132,7 +140,7 @@ std::vector<uint32_t> ObjMaterials::add_to(Scene& scene, const std::vector<bool>
         for (const MtlTexture& texture : read.shown)
             if (used[m])
                 add_mtl_texture(texture, read.library, scene, to);
-        if (used[m] && emits(read) && is_opaque(material))
+        if (used[m] && emits(read) && can_shine(material))
             let_shine(read.emission, material);
         if (to.cutout) {
             cutouts[m] = uint32_t(scene.cutouts.size());

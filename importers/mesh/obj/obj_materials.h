@@ -32,8 +32,9 @@ public:
     /// damaged.
     Result<Done> read_libraries(std::string_view names, bool has_uv, const Warn& warn);
 
-    /// Returns the number of a material, which becomes grey where no library has it.
-    uint32_t find(std::string_view name, const Warn& warn);
+    /// Returns the number of a material, which becomes grey where no library has it, or will have.
+    /// line: that uses it.
+    uint32_t find(std::string_view name, uint64_t line);
 
     /// Returns whether textures of the material need texture coordinates.
     bool has_textures(uint32_t number) const { return !materials_[number].shown.empty(); }

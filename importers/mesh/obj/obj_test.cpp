@@ -40,7 +40,7 @@ TEST(Obj, CornersAreReadInEveryForm) {
         {"NULs at the end of the last line", corners + "f 1 2 3 4" + std::string(5000, '\0')},
         {"Ctrl-Z", corners + "f 1 2 3 4\n\x1a"},
         {"Ctrl-Z in a line", corners + "f 1 2 3 4\r\n\x1a\r\n" + std::string(2, '\0')},
-        {"comments and smoothing", "# x\n\n" + corners + "s off\ns 1\nf 1 2 3 4\n#"},
+        {"comments and smoothing", "# x\n\n" + corners + "s 1\ns off\nf 1 2 3 4\n#"},
     };
     for (const auto& test : cases) {
         SCOPED_TRACE(test.name);
@@ -101,7 +101,7 @@ TEST(Obj, CommentsStandBehindAnyStatement) {
                                    "o box # a box\nusemtl red # paint\nf 1 2 3 # f\n"
                                    "g lid\t#x\nusemtl grey#1 # again\nf 1 2 3\n"
                                    "o part #3\nusemtl Material #25\nf 1 2 3\n"
-                                   "g part #4 # four\nusemtl a #\ns 1 # smooth\nf 1 2 3\n"),
+                                   "g part #4 # four\nusemtl a #\ns 0 # flat\nf 1 2 3\n"),
              gather(warnings));
     ASSERT_TRUE(scene) << scene.error().message;
     EXPECT_TRUE(warnings.empty()) << folder.plain(warnings[0]);
@@ -182,11 +182,12 @@ TEST(Obj, VertexColorsAreSaidOnce) {
 
 TEST(Obj, TexturesAndLightOfMaterialsInUseAreSaidOnce) {
     const TestFolder folder;
-    folder.write("m.mtl",
-                 "newmtl a\nKd 1 0 0\nmap_Kd wood floor.png\nmap_aat on\nKe 0 0 0\n"
-                 "newmtl b\nmap_Kd wood floor.png\ndisp -bm 0.5 bumps.png\n"
-                 "Ke 4 4 2\nd 0.5\nillum 4\nnewmtl c\nrefl -type sphere sky.png\nmap_d leaf.png\n"
-                 "norm n.png\nnewmtl unused\nmap_Kd unused.png\nKe 1\n");
+    folder.write(
+        "m.mtl",
+        "newmtl a\nKd 1 0 0\nmap_Kd wood floor.png\nmap_aat on\nKe 0 0 0\n"
+        "newmtl b\nmap_Kd wood floor.png\ndisp -bm 0.5 bumps.png\n"
+        "Ke 4 4 2\nKs 0.5\nd 0.5\nillum 4\nnewmtl c\nrefl -type sphere sky.png\nmap_d leaf.png\n"
+        "norm n.png\nnewmtl unused\nmap_Kd unused.png\nKe 1\n");
     folder.write("plain.mtl", "newmtl d\nKd 1 1 1\n");
     std::vector<std::string> warnings;
     const auto scene =
@@ -236,7 +237,11 @@ TEST(Obj, GlassLetsThroughWhatItDoesNotMirror) {
         {"illum 6\nd -3\nNi 0\n", 0, 1, vec3(1), 1},
         // 3ds Max writes this for an opaque material.
         {"illum 2\nNi 1.5\nd 1\nTr 1\nTf 1 1 1\n", 0, 0, vec3(1), 1},
-        {"illum 3\nKs 0.5\nd 0.5\nNi 1.5\n", 0.5f, 0, vec3(1), 1},
+        // The format dissolves surfaces in all models.
+        {"illum 3\nKs 0.5\nd 0.5\nNi 1.5\n", 0.5f, 0.25f, vec3(1), 1},
+        {"d 0.25\n", 0, 0.75f, vec3(1), 1},
+        {"illum 2\nTr 0.25\nNi 1.5\nTf 0.5\n", 0, 0.25f, vec3(1), 1},
+        {"illum 2\nTr 1\n", 0, 0, vec3(1), 1},
     };
     for (const auto& expected : kCases) {
         const Material found = mtl_material(expected.statements);
@@ -245,6 +250,26 @@ TEST(Obj, GlassLetsThroughWhatItDoesNotMirror) {
         EXPECT_EQ(found.filter, expected.filter) << expected.statements;
         EXPECT_EQ(found.ior, expected.ior) << expected.statements;
     }
+}
+
+TEST(Obj, SmoothingAndTurbulenceAreSaid) {
+    const TestFolder folder;
+    folder.write("m.mtl", "newmtl a\nmap_Kd -t 1 1 a.png\nnewmtl b\n");
+    std::vector<std::string> warnings;
+    const auto read = [&](const std::string& text) {
+        warnings.clear();
+        EXPECT_TRUE(load(folder.write("a.obj", kCorners + text), gather(warnings)));
+        for (std::string& warning : warnings)
+            warning = folder.plain(warning);
+        return warnings;
+    };
+    EXPECT_TRUE(read("s off\nf 1 2 3\ns 0\nf 1 2 3\nvn 0 0 1\ns 1\nf 1//1 2//1 3//1\n").empty());
+    EXPECT_EQ(read("s 1\nf 1 2 3\n"),
+              (std::vector<std::string>{
+                  "a.obj, line 6: smoothing groups left out: faces without normals are flat"}));
+    EXPECT_EQ(read("usemtl a\nmtllib m.mtl\nf 1 2 3\nusemtl b\nf 1 2 3\n"),
+              (std::vector<std::string>{"m.mtl, line 2: the option '-t' left out"}))
+        << "a library may come behind its materials";
 }
 
 TEST(Obj, LibrariesAreFoundUnderEveryKindOfName) {
@@ -336,9 +361,9 @@ TEST(Obj, WhatIsLeftOutIsSaidOncePerKind) {
                   "left.obj, line 5: statements 'l' left out",
                   "left.obj, line 7: statements 'p' left out",
                   "left.obj, line 8: faces with fewer than three corners left out",
+                  "left.obj, line 11: no material library 'gone.mtl': its materials become grey",
                   "left.obj, line 10: no material 'missing': it becomes grey, and so do others "
-                  "that are missing",
-                  "left.obj, line 11: no material library 'gone.mtl': its materials become grey"}));
+                  "that are missing"}));
 }
 
 TEST(Obj, ErrorsNameThePlaceAndWhatWasExpected) {
