@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The PLY reader streams polygons and triangle strips, in ASCII and in binary of either byte order.
 #include "core/file/triangle_sink.h"
+#include "importers/file/text.h"
 #include "importers/mesh/blocks.h"
 #include "importers/mesh/ply_rows.h"
 #include "importers/mesh/polygon.h"
@@ -403,11 +404,32 @@ private:
     std::vector<std::array<uint32_t, 3>> cut_;
 };
 
-bool has_colors(const PlyElement& vertices) {
+bool has_colors(const PlyElement* element) {
     for (const char* red : {"red", "diffuse_red", "r"})
-        if (vertices.find(red) >= 0)
+        if (element && element->find(red) >= 0)
             return true;
     return false;
+}
+
+/// Returns a sentence on each kind of thing that the header tells of and the reader passes over.
+std::vector<std::string> left_out_of(const PlyHeader& header) {
+    std::vector<std::string> sentences, others, textures;
+    for (const char* element : {"vertex", "face"})
+        if (has_colors(header.find(element)))
+            sentences.push_back(fmt::format("{} colors left out", element));
+    for (const PlyElement& element : header.elements)
+        if (element.count > 0 && !element.properties.empty() && &element != header.find("vertex") &&
+            element.name != "face" && element.name != "tristrips")
+            others.push_back(ovc::quoted(element.name));
+    for (const std::string& texture : header.textures)
+        textures.push_back(ovc::quoted(texture));
+    if (!others.empty())
+        sentences.push_back(
+            fmt::format("{} left out: {}", counted(others.size(), "element"), listed(others)));
+    if (!textures.empty())
+        sentences.push_back(
+            fmt::format("{} left out: {}", counted(textures.size(), "texture"), listed(textures)));
+    return sentences;
 }
 
 template <class Rows, class V>
@@ -433,8 +455,8 @@ Result<Scene> read_body(Source& source, const PlyHeader& header, const std::file
                          counted(reader.too_short(), "polygon")));
     if (reader.lost_normals())
         warn("normals left out: some are zero or not finite");
-    if (const PlyElement* vertices = header.find("vertex"); vertices && has_colors(*vertices))
-        warn("vertex colors left out");
+    for (const std::string& sentence : left_out_of(header))
+        warn(sentence);
     if (reader.triangle_count() == 0)
         warn("it has no triangles");
     return reader.take(path.stem().string());

@@ -72,6 +72,8 @@ public:
             if (keyword == "end_header")
                 return format_seen ? Result<PlyHeader>(std::move(header_))
                                    : wrong("end_header", "a line format … before it");
+            if (keyword == "comment" && next_word(rest) == "TextureFile" && !trimmed(rest).empty())
+                header_.textures.emplace_back(trimmed(rest)); // as VCGLIB writes them
             if (keyword.empty() || is_remark(keyword))
                 continue;
             format_seen = format_seen || keyword == "format";

@@ -53,6 +53,7 @@ struct PlyElement {
 struct PlyHeader {
     PlyFormat format{};
     std::vector<PlyElement> elements;
+    std::vector<std::string> textures; // names of pictures
 
     const PlyElement* find(std::string_view element) const;
 };

@@ -77,8 +77,9 @@ TEST(Ply, ExtraPropertiesElementsAndBlanksAreSkipped) {
               " 255 0 1 0 1\n255 .5 +1 0 0e0\n42\n1 3 0 1 2 0\n1 3 0 2 3 2 0.5 0.5\n"));
     std::vector<std::string> warnings;
     EXPECT_EQ(triangles_of(load(path, gather(warnings))), kBentSquare);
-    ASSERT_EQ(warnings.size(), 1u);
+    ASSERT_EQ(warnings.size(), 2u);
     EXPECT_EQ(folder.plain(warnings[0]), "extra.ply: vertex colors left out");
+    EXPECT_EQ(folder.plain(warnings[1]), "extra.ply: 2 elements left out: 'camera', 'edge'");
 }
 
 /// Returns `value` as a PLY type of this name stores it.
@@ -449,6 +450,26 @@ TEST(Ply, EveryTruncationOfABinaryFileIsAnError) {
     const std::string whole = binary_square(false);
     for (size_t length = 0; length < whole.size(); ++length)
         EXPECT_FALSE(load(folder.write("cut.ply", whole.substr(0, length)))) << length;
+}
+
+TEST(Ply, WhatIsPassedOverIsSaidByName) {
+    const TestFolder folder;
+    std::vector<std::string> warnings;
+    const auto scene =
+        load(folder.write("a.ply",
+                          "ply\nformat ascii 1.0\ncomment TextureFile wood floor.png\n"
+                          "comment TextureFile\nelement camera 1\nproperty float view\n"
+                          "element vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+                          "element none 0\nelement face 1\nproperty list uchar int vertex_indices\n"
+                          "property uchar red\nelement edge 1\nproperty int vertex1\nend_header\n"
+                          "7\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 255\n0\n"),
+             gather(warnings));
+    ASSERT_TRUE(scene);
+    for (std::string& warning : warnings)
+        warning = folder.plain(warning);
+    EXPECT_EQ(warnings, (std::vector<std::string>{"a.ply: face colors left out",
+                                                  "a.ply: 2 elements left out: 'camera', 'edge'",
+                                                  "a.ply: 1 texture left out: 'wood floor.png'"}));
 }
 
 } // namespace
