@@ -39,5 +39,20 @@ TEST(Simplifications, TellThatSurfacesLightNoOthers) {
     EXPECT_TRUE(simplifications(scene, "a.obj").empty());
 }
 
+TEST(Simplifications, TellThatMetalsAreMatte) {
+    Scene scene;
+    Material& metal = scene.materials.emplace_back();
+    metal.optics = Optics{.boundary = Optics::Boundary::Metal};
+    EXPECT_THAT(simplifications(scene, "a.glb"),
+                testing::ElementsAre("a.glb: metals are matte; --integrator path has their shine"));
+    for (const float share : {0.0f, 0.5f}) {
+        metal.maps.emplace().metallic = uint32_t(scene.textures.size());
+        scene.textures.push_back({{}, {{0, {vec3(share)}, kNoTexture}}});
+        EXPECT_EQ(simplifications(scene, "a.glb").empty(), share == 0);
+    }
+    metal.finish.emplace();
+    EXPECT_TRUE(simplifications(scene, "a.glb").empty()) << "shown by its finish";
+}
+
 } // namespace
 } // namespace ovc

@@ -125,6 +125,12 @@ static int times_around(const Soup& soup, uint32_t mesh, const dvec3& point) {
     return times;
 }
 
+/// Returns whether some of the surface is metal.
+static bool has_metal(const Scene& scene, const Material& material) {
+    const uint32_t share = material.maps ? material.maps->metallic : kNone;
+    return share == kNone || scene.textures[share] != Texture{{}, {{0, {vec3(0)}, kNoTexture}}};
+}
+
 void tell_simplifications(const Scene& scene, std::span<const Light> lights,
                           std::string_view source, const LogSink& log) {
     // The only stand-in that is parallel is the sky's.
@@ -148,6 +154,12 @@ void tell_simplifications(const Scene& scene, std::span<const Light> lights,
             fmt::format("{}: surfaces that send out light are bright but light no others; "
                         "--integrator path has their light",
                         source));
+    if (std::ranges::any_of(scene.materials, [&](const Material& m) {
+            return m.optics && m.optics->boundary == Optics::Boundary::Metal && !m.finish &&
+                   has_metal(scene, m);
+        }))
+        say(log, LogLevel::Warning,
+            fmt::format("{}: metals are matte; --integrator path has their shine", source));
     if (scene.exposure != 1)
         say(log, LogLevel::Info,
             fmt::format("{}: light times {:.3g}, to fit a picture that ends at white; "
