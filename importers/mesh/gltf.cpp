@@ -30,9 +30,14 @@ constexpr int kMaxDepth = 200;
 
 /// The extensions that are shown. assimp_look.cpp reads what Assimp makes of them. Assimp says
 /// where it was built without Draco.
-constexpr std::string_view kDraco = "KHR_draco_mesh_compression";
-constexpr std::string_view kShown[] = {kDraco, "KHR_lights_punctual", "KHR_materials_ior",
-                                       "KHR_materials_transmission", "KHR_texture_transform"};
+constexpr std::string_view kDraco = "KHR_draco_mesh_compression",
+                           kStrength = "KHR_materials_emissive_strength";
+constexpr std::string_view kShown[] = {kDraco,
+                                       "KHR_lights_punctual",
+                                       kStrength,
+                                       "KHR_materials_ior",
+                                       "KHR_materials_transmission",
+                                       "KHR_texture_transform"};
 
 /// The extensions without which a file that does not require them means the same.
 constexpr std::string_view kNeedless[] = {"EXT_meshopt_compression", "KHR_mesh_quantization",
@@ -292,6 +297,24 @@ std::optional<std::string> uneven_vertex(const Json& gltf) {
     return std::nullopt;
 }
 
+/// Multiplies the light of materials by KHR_materials_emissive_strength, which Assimp 5 passes
+/// over.
+void strengthen_light(Json& gltf) {
+    const auto extension = Json::json_pointer("/extensions") / std::string(kStrength);
+    Json* const materials = value_at(gltf, Json::json_pointer("/materials"));
+    for (size_t m = 0; materials && materials->is_array() && m < materials->size(); ++m) {
+        Json& material = (*materials)[m];
+        const Json* const strength = value_at(material, extension / "emissiveStrength");
+        Json* const factor = value_at(material, Json::json_pointer("/emissiveFactor"));
+        if (!strength || !strength->is_number())
+            continue;
+        for (size_t c = 0; factor && factor->is_array() && c < factor->size(); ++c)
+            if ((*factor)[c].is_number())
+                (*factor)[c] = (*factor)[c].get<double>() * strength->get<double>();
+        material["extensions"].erase(std::string(kStrength));
+    }
+}
+
 /// Decodes the names of files, which are URIs: Assimp opens them as they stand.
 void name_files(Json& gltf) {
     Json* const buffers = value_at(gltf, Json::json_pointer("/buffers"));
@@ -386,6 +409,7 @@ Result<GltfFile> read_gltf_file(Source& source) {
         return source.error(*fault);
     file.left_out = omissions.take_out();
     tell_nodes_apart(*gltf);
+    strengthen_light(*gltf);
     name_files(*gltf);
     make_scene(*gltf);
     std::string json = gltf->dump();

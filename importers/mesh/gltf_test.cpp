@@ -335,13 +335,22 @@ TEST(Gltf, ExtensionsThatAreNotShownAreNamed) {
     const std::string required = ",\"extensionsRequired\":[\"KHR_texture_transform\",\"X_y\"]";
     EXPECT_EQ(failure_of(gltf_of("{}", required)),
               "a.gltf: found the required extension 'X_y', expected none but "
-              "KHR_draco_mesh_compression, KHR_lights_punctual, KHR_materials_ior, "
-              "KHR_materials_transmission, KHR_texture_transform");
+              "KHR_draco_mesh_compression, KHR_lights_punctual, KHR_materials_emissive_strength, "
+              "KHR_materials_ior, KHR_materials_transmission, KHR_texture_transform");
     const ReadGltf read =
         read_gltf(gltf_of("{\"extensions\":{\"KHR_materials_ior\":{},\"KHR_materials_unlit\":{}}}",
                           ",\"extensionsRequired\":[\"KHR_materials_unlit\"]"));
     EXPECT_THAT(read.warnings, testing::ElementsAre(testing::HasSubstr(
                                    "the extension 'KHR_materials_unlit' left out")));
+}
+
+TEST(Gltf, LightMayBeStrongerThanItsFactor) {
+    const ReadGltf read =
+        read_gltf(gltf_of("{\"emissiveFactor\":[1,0.5,0],\"extensions\":{"
+                          "\"KHR_materials_emissive_strength\":{\"emissiveStrength\":5}}}"));
+    EXPECT_TRUE(read.warnings.empty());
+    ASSERT_TRUE(read.material().optics);
+    EXPECT_EQ(read.material().optics->emission, vec3(5, 2.5f, 0));
 }
 
 TEST(Gltf, NamesOfFilesAreUris) {
