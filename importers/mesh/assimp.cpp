@@ -280,7 +280,9 @@ Result<Scene> read_assimp(const std::filesystem::path& path, const ImportOptions
         left_out = left_out_of(*found, scene.camera.has_value(), std::move(textures), lights);
     }
     if (!found || source->is_damaged())
-        return source->error(fmt::format("Assimp found: {}", importer.GetErrorString()));
+        return source->error(fmt::format(
+            "Assimp found: {}{}", importer.GetErrorString(),
+            gltf.has_long_draco ? "; Assimp 5.2 loses indices of 32 bits that Draco unpacks" : ""));
     left_out.insert(left_out.end(), gltf.left_out.begin(), gltf.left_out.end());
     for (const std::string& sentence : left_out)
         say(options.log, LogLevel::Warning, source->error(sentence).message);

@@ -187,6 +187,8 @@ public:
         return std::move(sentences_);
     }
 
+    bool has_long_draco() const { return has_long_draco_; }
+
 private:
     /// Returns the members of an array that are objects.
     static std::vector<std::reference_wrapper<Json>> all(Json& json, const char* name) {
@@ -269,12 +271,16 @@ private:
         Json* const positions = value_at(primitive, Json::json_pointer("/attributes/POSITION"));
         Json* const indices = value_at(primitive, Json::json_pointer("/indices"));
         const Json* const vertices = positions ? accessor_at(gltf_, *positions) : nullptr;
-        if (vertices && indices && accessor_at(gltf_, *indices) &&
-            vertices->value("count", uint64_t(0)) <= kMaxUnsigned16 + 1)
+        if (!vertices || !indices || !accessor_at(gltf_, *indices))
+            return;
+        if (vertices->value("count", uint64_t(0)) > kMaxUnsigned16 + 1)
+            has_long_draco_ = true;
+        else
             gltf_["accessors"][indices->get<size_t>()]["componentType"] = kUnsigned16;
     }
 
     Json& gltf_;
+    bool has_long_draco_ = false;
     std::vector<std::string> sentences_;
     uint64_t skinned_ = 0, morphed_ = 0, colored_ = 0, uneven_ = 0;
 };
@@ -408,6 +414,7 @@ Result<GltfFile> read_gltf_file(Source& source) {
     if (fault)
         return source.error(*fault);
     file.left_out = omissions.take_out();
+    file.has_long_draco = omissions.has_long_draco();
     tell_nodes_apart(*gltf);
     strengthen_light(*gltf);
     name_files(*gltf);

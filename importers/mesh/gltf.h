@@ -15,6 +15,7 @@ struct GltfFile {
     /// data of vertices. Assimp 5 reads them as well, and crashes where they are incomplete.
     std::string bytes;
     bool is_binary = false;
+    bool has_long_draco = false; // with indices of 32 bits, which Assimp 5.2 loses
     /// A sentence on each kind of thing that the file asks for and does not get.
     std::vector<std::string> left_out;
 };
