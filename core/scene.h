@@ -81,7 +81,8 @@ struct Optics {
     /// `ior`. Thin does the same for a pane, both of its sides together.
     enum class Boundary : uint8_t { None, Mirror, Metal, Dielectric, Thin };
 
-    vec3 diffuse{0}; // scattered evenly, of the light below the boundary
+    vec3 diffuse{0};        // scattered evenly, of the light below the boundary
+    vec3 diffuse_behind{0}; // the same to the other side, which leaves share 1 - diffuse for it
     /// A Dielectric throws part of the scattered light back down, which is then scattered again:
     /// less comes out of a dark `diffuse`. Else that is what comes out in all.
     bool internal_reflection = false;
@@ -417,7 +418,8 @@ struct Background {
     vec3 horizon{0.8f};
     vec3 zenith{0.35f, 0.5f, 0.8f};
     std::vector<PlacedTexture> layers;
-    bool tints = true; // what a layer's filter lets through takes on its color
+    bool tints = true;       // what a layer's filter lets through takes on its color
+    bool layers_add = false; // the light of opaque layers is added to that behind them
     std::vector<Fog> fogs;
     std::vector<Rainbow> rainbows;
     std::vector<Medium> media; // that fill the air, outside of solids

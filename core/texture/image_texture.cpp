@@ -3,7 +3,11 @@
 // of the (Hemi)Sphere using SIMD", in the form of pbrt-v4.
 #include "core/texture/image_texture.h"
 
+#include "core/scene.h"
+#include "core/system/parallel.h"
+
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <numbers>
 
@@ -80,8 +84,11 @@ vec3 of_channel(const ImageTexture& image, const vec4& found) {
     case ImageTexture::Channel::Opacity:
         return vec3(found.w);
     case ImageTexture::Channel::Mask:
+    case ImageTexture::Channel::CodedMask:
         if (image.lookup->has_opacity())
-            return vec3(found.w);
+            return vec3(image.channel == ImageTexture::Channel::Mask
+                            ? found.w
+                            : linear_light(found.w, image.gamma));
         [[fallthrough]];
     case ImageTexture::Channel::Mean:
         return vec3((found.x + found.y + found.z) / 3);
@@ -114,6 +121,49 @@ TransparentColor color_at(const ImageTexture& image, const dvec3& at,
     color.filter = opacity * image.filter_all;
     color.transmit = 1 - opacity + opacity * image.transmit_all;
     return color;
+}
+
+/// Returns the solid angle of a texel at a place of the unit square, or that times the cosine by
+/// which a surface receives its light, as a share of the square's. shape: width by height.
+static double weight_of_texel(const ImageTexture& image, const dvec2& at, double shape) {
+    const dvec2 signed_at = 2.0 * at - 1.0;
+    switch (image.per) {
+    case ImageTexture::Measure::None:
+    case ImageTexture::Measure::Mean:
+        break;
+    case ImageTexture::Measure::ThroughWindow: {
+        const dvec2 half = glm::max(dvec2(shape, 1 / shape), 1.0); // of the window
+        const double distance = image.window_distance;
+        const double cosine = distance / glm::length(dvec3(half * signed_at, distance));
+        return 4 * half.x * half.y / (distance * distance) * cosine * cosine * cosine;
+    }
+    case ImageTexture::Measure::FromAbove: { // a texel at the rim of the upper half has z = 0
+        const double from_rim = 1 - std::abs(signed_at.x) - std::abs(signed_at.y);
+        const double r = 1 - from_rim;
+        return from_rim > 0 ? 4 * std::numbers::pi * (1 - r * r) : 0;
+    }
+    }
+    return 1;
+}
+
+double measured(const ImageTexture& image) {
+    assert(image.lookup);
+    const dvec2 size = glm::max(image.lookup->size(), 1.0);
+    const size_t width = size_t(size.x), height = size_t(size.y);
+    const auto add_texels = [&](size_t first, size_t last, double sum) {
+        for (size_t i = first; i < last; ++i) {
+            const dvec2 at = (dvec2(double(i % width), double(i / width)) + 0.5) / size;
+            PictureArea texel{at};
+            texel.filter = TexelFilter::Nearest;
+            const vec3 color = of_channel(image, image.lookup->color(texel));
+            sum += weight_of_texel(image, at, size.x / size.y) *
+                   (0.2126 * double(color.x) + 0.7152 * double(color.y) + 0.0722 * double(color.z));
+        }
+        return sum;
+    };
+    return parallel_reduce(width * height, 0.0, add_texels,
+                           [](double a, double b) { return a + b; }) /
+           (size.x * size.y);
 }
 
 } // namespace ovc

@@ -62,8 +62,14 @@ struct ImageTexture {
     /// one from +z down, which is 1 at +z. Octahedral: Clarberg's equal-area map of directions.
     enum class Projection : uint64_t { Planar, Spherical, Cylindrical, Torus, LatLong, Octahedral };
     /// Color, or a gray of one of the picture's channels. Mask: the opacity where the picture has
-    /// any, else the mean color. Mean: that always.
-    enum class Channel : uint64_t { Color, Red, Green, Blue, Opacity, Mask, Mean };
+    /// any, else the mean color. Mean: that always. CodedMask: as Mask, of an opacity that is a
+    /// code as colors are.
+    enum class Channel : uint64_t { Color, Red, Green, Blue, Opacity, Mask, Mean, CodedMask };
+    /// The light of a picture whose file says how much light it is to give: the mean luminance of
+    /// its texels, that of all ways through a window (ThrownPicture) together, and that which a
+    /// surface receives that faces +z below an Octahedral picture as the sky. Of color 1, they are
+    /// 1, the window's solid angle, and pi.
+    enum class Measure : uint64_t { None, Mean, ThroughWindow, FromAbove };
 
     uint32_t picture = 0; // index into Scene::pictures
     Projection projection = Projection::Planar;
@@ -75,7 +81,9 @@ struct ImageTexture {
     /// sRGB's curve. Pictures of floats hold linear light.
     double gamma = 0;
     Channel channel = Channel::Color;
-    bool is_transparent = false;            // light goes through where the picture has no opacity
+    Measure per = Measure::None; // whoever opens the picture divides its colors by this
+    double window_distance = 1;  // of ThroughWindow, in halves of the window's shorter side
+    bool is_transparent = false; // light goes through where the picture has no opacity
     float filter_all = 0, transmit_all = 0; // go through everywhere, of light where it is opaque
     vec3 scale{1}, offset{0};               // the color is scale x the picture's + offset
     TransparentColor otherwise{vec3(0.5f)}; // the color without the picture
@@ -87,5 +95,8 @@ struct ImageTexture {
 /// Returns the color at a point. sides: of the parallelogram around it whose mean is wanted.
 TransparentColor color_at(const ImageTexture& image, const dvec3& at,
                           const std::array<dvec3, 2>& sides);
+
+/// Returns the light of a picture that is open, by image.per: an integral over its texels.
+double measured(const ImageTexture& image);
 
 } // namespace ovc

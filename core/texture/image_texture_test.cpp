@@ -87,6 +87,33 @@ TEST(ImageTexture, TheOctahedralMapKeepsAreasAndAxes) {
         EXPECT_NEAR(count, kDirections / double(kCells * kCells), 0.03 * kDirections / 64);
 }
 
+/// A white picture gives as much as the definitions say; one that is s in red and t in green the
+/// mean of both by brightness.
+TEST(ImageTexture, MeasuresTheLightOfPictures) {
+    class White final : public ImageLookup {
+    public:
+        vec4 color(const PictureArea&) const override { return vec4(1); }
+        dvec2 size() const override { return {300, 200}; }
+        bool has_opacity() const override { return false; }
+    };
+    const White white;
+    ImageTexture image;
+    image.lookup = &white;
+    image.per = ImageTexture::Measure::Mean;
+    EXPECT_NEAR(measured(image), 1, 1e-6);
+    image.per = ImageTexture::Measure::FromAbove;
+    EXPECT_NEAR(measured(image), std::numbers::pi, 1e-3);
+    // The solid angle of a pyramid of a x b at the distance d is 4 asin(a b / sqrt(...)).
+    image.per = ImageTexture::Measure::ThroughWindow;
+    image.window_distance = 2;
+    const double a = 1.5 / 2, b = 1.0 / 2;
+    const double angle = 4 * std::asin(a * b / std::sqrt((1 + a * a) * (1 + b * b)));
+    EXPECT_NEAR(measured(image), angle, 1e-4);
+    image.lookup = &kShowsPlace;
+    image.per = ImageTexture::Measure::Mean;
+    EXPECT_NEAR(measured(image), 0.5 * (0.2126 + 0.7152), 1e-6);
+}
+
 TEST(ImageTexture, ScalesTurnsAndTakesChannels) {
     ImageTexture image = image_by(Projection::Planar);
     image.to_picture = {dvec3(0, 2, 0.5), dvec3(-1, 0, 0)};
@@ -105,6 +132,9 @@ TEST(ImageTexture, ScalesTurnsAndTakesChannels) {
         image.channel = channel;
         EXPECT_EQ(color_at(image, {0.25, 0, 0}, {}).rgb, vec3(0.25f));
     }
+    image.channel = ImageTexture::Channel::CodedMask;
+    image.gamma = 2;
+    EXPECT_EQ(color_at(image, {0.25, 0, 0}, {}).rgb, vec3(0.0625f));
     ShowsPlace opaque;
     opaque.shows_opacity = false;
     image.lookup = &opaque;

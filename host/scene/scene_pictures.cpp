@@ -94,6 +94,25 @@ private:
     mutable std::string failure_;
 };
 
+/// A picture whose colors are divided by a measure of itself (ImageTexture::per).
+class ScenePictures::PicturePerMeasure final : public ImageLookup {
+public:
+    /// The picture must outlive it.
+    PicturePerMeasure(const ImageLookup& picture, double measure)
+        : picture_(picture), factor_(measure > 0 ? float(1 / measure) : 0) {}
+
+    vec4 color(const PictureArea& area) const override {
+        const vec4 found = picture_.color(area);
+        return {factor_ * vec3(found), found.w};
+    }
+    dvec2 size() const override { return picture_.size(); }
+    bool has_opacity() const override { return picture_.has_opacity(); }
+
+private:
+    const ImageLookup& picture_;
+    const float factor_; // 0 of a black picture
+};
+
 namespace {
 
 Result<const ovc_textures_api*> load_textures(const std::string& name) {
@@ -130,6 +149,10 @@ struct ScenePictures::Opened {
     const ovc_textures_api* api = nullptr; // null: the library is missing
     ovc_textures textures = nullptr;
     std::map<Key, Picture> pictures;
+    /// By the picture, the measure and its channel and window: each costs a look at every texel.
+    using MeasureKey =
+        std::tuple<const ImageLookup*, ImageTexture::Measure, ImageTexture::Channel, double>;
+    std::map<MeasureKey, PicturePerMeasure> by_measure;
 
     Opened() = default;
     Opened(const Opened&) = delete;
@@ -159,6 +182,18 @@ struct ScenePictures::Opened {
         else
             picture.why_not = sentence_about(file, api->last_error());
         return picture;
+    }
+
+    /// Gives an image its picture, or that divided by its measure.
+    void look_up(const ImageLookup* picture, ImageTexture& image) {
+        image.lookup = picture;
+        if (!picture || image.per == ImageTexture::Measure::None)
+            return;
+        const MeasureKey key{picture, image.per, image.channel, image.window_distance};
+        auto at = by_measure.find(key);
+        if (at == by_measure.end())
+            at = by_measure.try_emplace(key, *picture, measured(image)).first;
+        image.lookup = &at->second;
     }
 };
 
@@ -217,7 +252,7 @@ Result<Done> ScenePictures::open(Scene& scene) {
         assert(texture.image->picture < scene.pictures.size());
         Opened::Picture& picture =
             opened_->open(scene.pictures[texture.image->picture], texture.image->gamma);
-        texture.image->lookup = picture.lookup.get();
+        opened_->look_up(picture.lookup.get(), *texture.image);
         if (picture.lookup || picture.has_failed)
             continue;
         picture.has_failed = true;

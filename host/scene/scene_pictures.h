@@ -45,6 +45,7 @@ public:
 
 private:
     class OpenedPicture;
+    class PicturePerMeasure;
     struct Opened;
 
     Result<Done> leave_out(Scene& scene, const std::string& sentence, const char* kind) const;

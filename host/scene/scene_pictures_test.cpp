@@ -76,6 +76,23 @@ TEST(ScenePictures, GiveTexturesTheirColors) {
     EXPECT_TRUE(scene.omissions.empty());
 }
 
+TEST(ScenePictures, CountPerMeasureWhereTheirTexturesSaySo) {
+    if (!has_library())
+        GTEST_SKIP() << "libovercast-textures.so is not built";
+    const RedAndGreen picture;
+    ScenePictures pictures({}, LogSink());
+    Scene scene = scene_with({picture.path.string(), picture.path.string()});
+    for (Texture& texture : scene.textures)
+        texture.image->filter = TexelFilter::Nearest;
+    scene.textures[1].image->per = ImageTexture::Measure::Mean;
+    for (int again = 0; again < 2; ++again) {
+        ASSERT_TRUE(pictures.open(scene));
+        EXPECT_EQ(color_at(*scene.textures[0].image, {0.25, 0.5, 0}, {}).rgb, vec3(1, 0, 0));
+        EXPECT_NEAR(color_at(*scene.textures[1].image, {0.25, 0.5, 0}, {}).rgb.x,
+                    2 / (0.2126 + 0.7152), 1e-5);
+    }
+}
+
 TEST(ScenePictures, WarnOnceOfEachThatIsMissing) {
     if (!has_library())
         GTEST_SKIP() << "libovercast-textures.so is not built";

@@ -178,8 +178,10 @@ vec3 background_color(const Scene& scene, const vec3& up, const dvec3& dir) {
     vec3 seen = glm::mix(background.horizon, background.zenith, std::clamp(height, 0.0f, 1.0f));
     for (const PlacedTexture& layer : background.layers) {
         const TransparentColor c = color_at(scene.textures, layer, towards);
-        seen = c.opacity() * c.rgb +
-               (background.tints ? c.through() : vec3(c.filter + c.transmit)) * seen;
+        seen = c.opacity() * c.rgb + (background.layers_add ? vec3(1)
+                                      : background.tints    ? c.through()
+                                                            : vec3(c.filter + c.transmit)) *
+                                         seen;
     }
     return seen;
 }

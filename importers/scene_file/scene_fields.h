@@ -78,7 +78,8 @@ void each_field(auto& io, Some<TextureStop> auto& s) {
 /// An image is saved without its lookup: it is opened anew.
 void each_field(auto& io, Some<ImageTexture> auto& i) {
     io(i.picture, i.projection, i.to_picture, i.beyond_s, i.beyond_t, i.filter, i.gamma, i.channel,
-       i.is_transparent, i.filter_all, i.transmit_all, i.scale, i.offset, i.otherwise);
+       i.per, i.window_distance, i.is_transparent, i.filter_all, i.transmit_all, i.scale, i.offset,
+       i.otherwise);
 }
 
 void each_field(auto& io, Some<Texture> auto& t) {
@@ -98,8 +99,8 @@ void each_field(auto& io, Some<PictureFile> auto& p) {
 }
 
 void each_field(auto& io, Some<Optics> auto& o) {
-    io(o.diffuse, o.internal_reflection, o.boundary, o.reflection, o.through, o.ior, o.width,
-       o.emission, o.two_sided);
+    io(o.diffuse, o.diffuse_behind, o.internal_reflection, o.boundary, o.reflection, o.through,
+       o.ior, o.width, o.emission, o.two_sided);
 }
 
 void each_field(auto& io, Some<Radiosity> auto& r) {
@@ -176,7 +177,7 @@ void each_field(auto& io, Some<Rainbow> auto& r) {
 }
 
 void each_field(auto& io, Some<Background> auto& b) {
-    io(b.horizon, b.zenith, b.layers, b.tints, b.fogs, b.rainbows, b.media);
+    io(b.horizon, b.zenith, b.layers, b.tints, b.layers_add, b.fogs, b.rainbows, b.media);
 }
 
 void each_field(auto& io, Some<Omission> auto& o) {

@@ -46,8 +46,10 @@ inline bool is_sound(const Pattern& pattern) {
 inline bool is_sound(const ImageTexture& image, size_t pictures) {
     const auto fits = [](Beyond beyond) { return beyond <= Beyond::Nothing; };
     return image.picture < pictures && image.projection <= ImageTexture::Projection::Octahedral &&
-           image.channel <= ImageTexture::Channel::Mean && fits(image.beyond_s) &&
-           fits(image.beyond_t) && image.filter <= TexelFilter::Mipmaps && image.gamma >= 0;
+           image.channel <= ImageTexture::Channel::CodedMask &&
+           image.per <= ImageTexture::Measure::FromAbove && image.window_distance > 0 &&
+           fits(image.beyond_s) && fits(image.beyond_t) && image.filter <= TexelFilter::Mipmaps &&
+           image.gamma >= 0;
 }
 
 /// Returns whether a texture has the parts that its kind asks for.

@@ -131,7 +131,9 @@ static void add_textures(Scene& scene) {
     scene.pictures = {{"/a.png", "a.pbrt:1", {}}, {"b.glb, picture *0", "", {1, 2, 3}}};
     Texture image{.kind = TextureKind::Image, .on_uv = true, .image = ImageTexture{.picture = 1}};
     image.image->projection = ImageTexture::Projection::Torus;
-    image.image->channel = ImageTexture::Channel::Mask;
+    image.image->channel = ImageTexture::Channel::CodedMask;
+    image.image->per = ImageTexture::Measure::ThroughWindow;
+    image.image->window_distance = 2;
     scene.textures.push_back(image);
     scene.textures.push_back(
         {.stops = {{0, {}, 0}, {0, {}, 3}, {0, {vec3(1)}}}, .kind = TextureKind::Mix});
@@ -142,6 +144,8 @@ static void add_textures(Scene& scene) {
     scene.materials[1].bump = Bump{.kind = Bump::Kind::Dents};
     scene.materials.push_back({.name = "mixed", .under = 1, .mix = PlacedTexture{2}});
     scene.background.layers = {PlacedTexture{0}};
+    scene.background.layers_add = true;
+    scene.materials[1].optics = Optics{.diffuse_behind = vec3(0.25f)};
 }
 
 Scene scene_with_everything() {
