@@ -43,7 +43,8 @@ float smooth_opacity(const Cutout& cutout, const dvec2& at) {
     return glm::mix(top, below, share.y);
 }
 
-/// Returns a number in [0, 1) that differs from hit to hit as if by chance.
+} // namespace
+
 float chance_of(const Hit& hit) {
     uint64_t hash = (uint64_t(hit.id.mesh) << 32) | hit.id.prim;
     for (const double number : {hit.u, hit.v, hit.t}) { // the mixing is SplitMix64's
@@ -54,6 +55,8 @@ float chance_of(const Hit& hit) {
     }
     return float(hash >> 40) * 0x1p-24f;
 }
+
+namespace {
 
 /// Returns the share of hits that count where a cutout has this opacity.
 float share_that_counts(const Cutout& cutout, float opacity) {

@@ -10,6 +10,9 @@
 
 namespace ovc {
 
+/// Returns a number in [0, 1) that differs from hit to hit as if by chance.
+float chance_of(const Hit& hit);
+
 class Cutouts final : public HitFilter {
 public:
     /// The rays that ask: for shadow rays a mesh may have holes of its own.

@@ -55,6 +55,22 @@ static bool passes(const Material& material, bool may_be_bent) {
     return material.transmission > 0 && (may_be_bent || material.ior == 1);
 }
 
+/// Returns the part that a hit meets of a mixture of materials that say how they treat light, by
+/// chance; a path goes one way. Of others it returns the whole.
+static SurfacePoint met_part(SurfacePoint surface, const Hit& hit) {
+    if (surface.coats.empty() || !std::ranges::all_of(surface.coats, [](const Coat& coat) {
+            return coat.surface.material->optics.has_value();
+        }))
+        return surface;
+    // What chance_of() leaves undecided, because holes go by it.
+    const float scaled = chance_of(hit) * 4096;
+    float at = scaled - std::floor(scaled);
+    size_t part = 0;
+    while (part + 1 < surface.coats.size() && at >= surface.coats[part].weight.x)
+        at -= surface.coats[part++].weight.x;
+    return std::move(surface.coats[part].surface);
+}
+
 static bool light_passes(const Scene& scene, bool has_lights) {
     return std::any_of(scene.materials.begin(), scene.materials.end(),
                        [&](const Material& m) { return passes(m, has_lights); });
@@ -113,7 +129,8 @@ void PathTracer::shade(std::span<const Ray> rays, std::span<const Path> paths,
 
 void PathTracer::meet(const Ray& ray, Path path, const Hit& hit, Film& film, Sides& sides,
                       Spawned& spawned) const {
-    const SurfacePoint surface = surface_point(scene_, ray, hit, needs_cones_ ? path.cone : Cone());
+    const SurfacePoint surface =
+        met_part(surface_point(scene_, ray, hit, needs_cones_ ? path.cone : Cone()), hit);
     const double distance = double(path.behind) + hit.t * glm::length(ray.dir);
     path.weight *= share_kept(ray, surface);
     const Met met{ray, path, hit, distance, surface, Bsdf(surface)};
@@ -212,7 +229,9 @@ void PathTracer::go_on(const Met& met, const Scattered& scattered, const vec3& w
     if (scattered.density > 0) {
         path.cone.spread = std::max(path.cone.spread, kBounceSpread);
         Ray ray;
-        ray.org = met.surface.position;
+        ray.org = glm::dot(scattered.direction, met.surface.geometric_normal) > 0
+                      ? met.surface.position
+                      : met.surface.beyond;
         ray.dir = scattered.direction;
         sides.bounced.push(ray, met.hit.id, path);
         return;
@@ -235,7 +254,7 @@ void PathTracer::go_on(const Met& met, const Scattered& scattered, const vec3& w
 /// Light of emitters passes surfaces that do not bend it; behind glass, paths find it. Only shadow
 /// rays find the light of points, so it passes glass straight, as in Whitted's model.
 bool PathTracer::pass(const Hit& hit, Ray& ray, Shadow& shadow) const {
-    const SurfacePoint surface = surface_point(scene_, ray, hit);
+    const SurfacePoint surface = met_part(surface_point(scene_, ray, hit), hit);
     const bool is_light = shadow.light != kNone;
     const bool ends = !passes(*surface.material, is_light) || shadow.passed >= options_.max_depth;
     shadow.arriving *=

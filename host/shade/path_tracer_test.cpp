@@ -181,6 +181,56 @@ TEST(PathTracer, ALampWithHolesShinesWhereThereIsSome) {
                 0.75 * 0.5 * 4 * form_factor(0.8, 1.5), "and of shadow rays");
 }
 
+/// A picture: the half of it at s < 0.5 shines.
+class ShinesAtTheLeft final : public ImageLookup {
+public:
+    vec4 color(const PictureArea& area) const override {
+        return vec4(vec3(area.st.x < 0.5 ? 1.0f : 0.0f), 1);
+    }
+    dvec2 size() const override { return dvec2(2); }
+    bool has_opacity() const override { return false; }
+};
+
+TEST(PathTracer, ALampMayShineLikeAPicture) {
+    static const ShinesAtTheLeft lookup;
+    Scene scene = dark();
+    add_level(scene, matte(vec3(0.5f)), 0, 3, true);
+    add_level(scene, lamp(vec3(4)), 1.5, 0.8, /* up= */ false);
+    scene.textures.push_back(
+        {.kind = TextureKind::Image,
+         .on_uv = true,
+         .image = ImageTexture{.filter = TexelFilter::Nearest, .lookup = &lookup}});
+    scene.materials[1].maps = MaterialMaps{.emission = 0};
+    const Chunk& chunk = scene.soup.chunks[1];
+    for (uint32_t t = 0; t < 2; ++t)
+        for (const dvec3& corner : chunk.triangle(t))
+            scene.meshes[1].uv.push_back(vec2(corner.x / 1.6 + 0.5, 0));
+    const double expected = 0.5 * 0.5 * 4 * form_factor(0.8, 1.5); // by symmetry
+    for (const LightSearch search :
+         {LightSearch::Both, LightSearch::ShadowRays, LightSearch::Paths}) {
+        PathTracerOptions options;
+        options.search = search;
+        expect_mean(estimate(scene, at_point({2, 1, 0}, dvec3(0)),
+                             search == LightSearch::Paths ? 512 : 128, options),
+                    expected, "half of a lamp");
+    }
+}
+
+TEST(PathTracer, OfAMixtureEachMaterialHasItsShare) {
+    Scene scene;
+    scene.background = {vec3(1), vec3(1)};
+    add_level(scene, optical({.boundary = Boundary::Mirror, .reflection = vec3(0.8f)}), 0, 3, true);
+    scene.materials.push_back(optical({.boundary = Boundary::Metal, .reflection = vec3(0)}));
+    Material mixed = scene.materials[0];
+    scene.textures.push_back({.stops = {{0.25, {}, 0}, {0.75, {}, 1}}});
+    scene.textures[0].pattern.kind = Pattern::Kind::Average;
+    mixed.mix = PlacedTexture{};
+    scene.materials.push_back(mixed);
+    scene.meshes[0].material = 2;
+    expect_mean(estimate(scene, at_point({0, 1, 0.01}, dvec3(0)), 1024), 0.2,
+                "a quarter reflects 0.8, and the rest nothing");
+}
+
 /// Shadow rays alone find its light, so that they count in full.
 TEST(PathTracer, ALampThatNoRaySeesShinesAlike) {
     Scene scene = dark();
@@ -311,6 +361,16 @@ TEST(PathTracer, ShadowRaysAndPathsFindTheSameLight) {
               true);
     add_level(metal, lamp(vec3(4)), 1.5, 0.8, /* up= */ false);
     compare(metal, at_point({1.5, 1.2, 0.1}, {0.6, 0, 0}), true, "metal");
+    Scene frosted = dark();
+    add_level(frosted, lamp(vec3(4)), 1.5, 0.8, /* up= */ false);
+    add_level(frosted,
+              optical({.boundary = Boundary::Dielectric, .through = vec3(1), .width = 0.5f}), 0.5,
+              3, false);
+    compare(frosted, at_point({0.3, -1, 0.1}, {0, 0.5, 0}), true, "frosted glass");
+    Scene leaf = dark();
+    add_level(leaf, lamp(vec3(4)), 1.5, 0.8, /* up= */ false);
+    add_level(leaf, optical({.diffuse = vec3(0.2f), .diffuse_behind = vec3(0.5f)}), 0.5, 3, false);
+    compare(leaf, at_point({0.3, -1, 0.1}, {0, 0.5, 0}), true, "a leaf");
     // Shadow rays go through a pane, and so do paths; paths alone find the light of the lamp's
     // mirror image.
     Scene pane = dark();

@@ -2,6 +2,7 @@
 // Lights are chosen by their power, with a binary search in the running sums of their chances.
 #include "host/shade/lights/light_sampler.h"
 
+#include "core/texture/pattern.h"
 #include "host/shade/lights/thrown_light.h"
 
 #include <algorithm>
@@ -17,6 +18,10 @@ namespace ovc {
 static constexpr double kBeforeEmitter = 1 - 0x1p-16;
 /// About so many triangles are sampled to measure the scene.
 static constexpr uint64_t kMeasured = 4096;
+/// The places of a triangle where its map is looked at, along each side: more where a mesh has few
+/// triangles.
+static constexpr int kMapLooks = 5;
+static constexpr uint32_t kFewTriangles = 10000;
 
 static double luminance(const vec3& c) {
     return 0.2126 * double(c.x) + 0.7152 * double(c.y) + 0.0722 * double(c.z);
@@ -79,21 +84,54 @@ void LightSampler::add_emitters(double reach) {
         if (material >= scene_.materials.size() || !scene_.materials[material].optics)
             continue;
         const Optics& optics = *scene_.materials[material].optics;
-        // Light that differs from place to place is left to the paths that find it.
-        if (const auto& maps = scene_.materials[material].maps; maps && maps->emission != kNone)
-            continue;
         const double power = luminance(optics.emission) / (reach * reach);
         if (!(power > 0) || !std::isfinite(power))
             continue;
         emitters_of_[m] = uint32_t(emitters_.size());
         const Chunk& chunk = scene_.soup.chunks[m];
         const bool is_unseen = chunk.mask() != 0 && !(chunk.mask() & kSeenInReflections);
-        emitters_.push_back({m, sums_.size() - 1, optics.two_sided, is_unseen, optics.emission});
+        const auto& maps = scene_.materials[material].maps;
+        emitters_.push_back({m, sums_.size() - 1, optics.two_sided, is_unseen, optics.emission,
+                             maps ? maps->emission : kNone});
         for (uint32_t p = 0; p < chunk.size(); ++p) {
             const double area = glm::length(area_normal(chunk.triangle(p)));
-            sums_.push_back(sums_.back() + (std::isfinite(area) ? power * area : 0));
+            const double share = mean_of_map(emitters_.back(), p);
+            sums_.push_back(sums_.back() + (std::isfinite(area) ? power * area * share : 0));
         }
     }
+}
+
+/// Returns the mean of a triangle's map at some places, by brightness. The light of a triangle that
+/// is dark at all of them is left to the paths that find it.
+double LightSampler::mean_of_map(const Emitters& emitters, uint32_t prim) const {
+    if (emitters.map == kNone)
+        return 1;
+    const int looks = scene_.soup.chunks[emitters.mesh].size() > kFewTriangles ? 1 : kMapLooks;
+    double sum = 0, all = luminance(emitters.radiance);
+    int count = 0;
+    for (int i = 0; i < looks; ++i)
+        for (int j = 0; i + j < looks; ++j, ++count) {
+            const dvec3 weights = (dvec3(i, j, looks - 1 - i - j) + 1.0 / 3) / double(looks);
+            sum += luminance(radiance_at(emitters, {emitters.mesh, prim}, weights));
+        }
+    return std::isfinite(sum) ? sum / (count * all) : 0;
+}
+
+/// Returns the radiance of a place of an emitter, by the weights of the triangle's corners.
+vec3 LightSampler::radiance_at(const Emitters& emitters, TriangleId id,
+                               const dvec3& weights) const {
+    if (emitters.map == kNone)
+        return emitters.radiance;
+    const Triangle t = scene_.soup.triangle(id);
+    TexturePoint place(weights[0] * t[0] + weights[1] * t[1] + weights[2] * t[2]);
+    if (const PerCorner<vec2> all = scene_.uv_of(scene_.meshes[id.mesh]); !all.empty()) {
+        const std::array<vec2, 3> uv = all.of(id.prim);
+        place.has_uv = true;
+        place.uv =
+            weights[0] * dvec2(uv[0]) + weights[1] * dvec2(uv[1]) + weights[2] * dvec2(uv[2]);
+    }
+    return emitters.radiance *
+           glm::max(color_at(scene_.textures, emitters.map, place).rgb, vec3(0));
 }
 
 /// Adds the sky by the light that it brings to a surface which sees half of it.
@@ -165,7 +203,8 @@ std::optional<Arriving> LightSampler::from_emitter(const Emitters& emitters, siz
     const dvec3 across = area_normal(t);
     const double area = glm::length(across);
     const double root = std::sqrt(u.x);
-    const dvec3 place = (1 - root) * t[0] + root * (1 - u.y) * t[1] + root * u.y * t[2];
+    const dvec3 weights(1 - root, root * (1 - u.y), root * u.y);
+    const dvec3 place = weights[0] * t[0] + weights[1] * t[1] + weights[2] * t[2];
     const dvec3 there = place - surface.position;
     const double distance = glm::length(there);
     if (!(distance > 0))
@@ -174,14 +213,13 @@ std::optional<Arriving> LightSampler::from_emitter(const Emitters& emitters, siz
     const double cosine = -glm::dot(towards, across) / area; // to the front
     // The shadow ray ends before the emitter, so that nobody asks about its holes there.
     const TriangleId id{emitters.mesh, uint32_t(i - emitters.first)};
-    const float there_is =
-        with_cutouts_ ? cutouts_.opacity_at(id, root * (1 - u.y), root * u.y) : 1;
+    const float there_is = with_cutouts_ ? cutouts_.opacity_at(id, weights[1], weights[2]) : 1;
     if (!(cosine > 0 || (emitters.two_sided && cosine < 0)) || there_is == 0)
         return std::nullopt;
     const double density = chance(i) / area * distance * distance / std::abs(cosine);
     return Arriving{{surface.position, 0, there, kBeforeEmitter},
                     towards,
-                    there_is * emitters.radiance / float(density),
+                    there_is * radiance_at(emitters, id, weights) / float(density),
                     emitters.is_unseen ? 0 : density,
                     kNone};
 }

@@ -55,10 +55,13 @@ private:
         bool two_sided;
         bool is_unseen; // by rays that surfaces scatter, so that only shadow rays find its light
         vec3 radiance;
+        uint32_t map; // the texture that multiplies it; kNone: it is the same everywhere
     };
 
     void add_lights(const dvec3& middle, double reach);
     void add_emitters(double reach);
+    double mean_of_map(const Emitters& emitters, uint32_t prim) const;
+    vec3 radiance_at(const Emitters& emitters, TriangleId id, const dvec3& weights) const;
     void add_sky();
     void share_with_the_weak();
     std::optional<Arriving> from_light(uint32_t number, const SurfacePoint& surface) const;

@@ -3,6 +3,7 @@
 #include "host/shade/surface/bsdf.h"
 
 #include "core/fresnel.h"
+#include "host/shade/refract.h"
 #include "host/shade/surface/microfacet.h"
 
 #include <algorithm>
@@ -76,7 +77,7 @@ Bsdf::Bsdf(const SurfacePoint& surface) : geometric_(surface.geometric_normal) {
 
 vec3 Bsdf::albedo() const {
     const vec3 gloss = is_glossy_ ? gloss_.at(view_.z) : vec3(0);
-    return glm::clamp(diffuse_ + gloss + mirror_ + through_, vec3(0), vec3(1));
+    return glm::clamp(diffuse_ + behind_ + gloss + mirror_ + through_ + frosted_, vec3(0), vec3(1));
 }
 
 static Reflectance reflectance_of(const Optics& optics, bool from_outside) {
@@ -104,6 +105,7 @@ void Bsdf::take_optics(const SurfacePoint& surface, const Optics& optics) {
     if (surface.entering || optics.two_sided)
         emission_ = optics.emission;
     diffuse_ = optics.diffuse;
+    behind_ = optics.diffuse_behind;
     if (optics.internal_reflection)
         diffuse_ *= share_from_below(optics.diffuse, optics.ior);
     // Ground and glass that share out the light lie beside each other, as in a mix of them.
@@ -112,16 +114,20 @@ void Bsdf::take_optics(const SurfacePoint& surface, const Optics& optics) {
         coat_ = boundary;
         coat_scale_ = 1.0f / glm::max(vec3(1) - boundary.mean(), vec3(1e-6f));
     }
-    if (clear) {
-        const bool total =
-            optics.boundary == Optics::Boundary::Dielectric && fresnel(view_.z, boundary.ior) >= 1;
+    const bool is_dielectric = optics.boundary == Optics::Boundary::Dielectric;
+    if (clear && is_dielectric && optics.width >= kSmooth && optics.ior != 1) {
+        frosted_ = optics.through;
+        bent_ = float(1 / (boundary.ior * boundary.ior));
+    }
+    if (clear && frosted_ == vec3(0)) {
+        const bool total = is_dielectric && fresnel(view_.z, boundary.ior) >= 1;
         double share =
             optics.boundary == Optics::Boundary::None ? 0 : fresnel(view_.z, boundary.ior);
         if (optics.boundary == Optics::Boundary::Thin)
             share = 2 * share / (1 + share); // light also goes from side to side within
         mirror_ = optics.reflection * float(share);
         through_ = total ? vec3(0) : optics.through * float(1 - share);
-        if (optics.boundary == Optics::Boundary::Dielectric) {
+        if (is_dielectric) {
             is_straight_ = false;
             bent_ = float(1 / (boundary.ior * boundary.ior));
         }
@@ -194,9 +200,14 @@ double Bsdf::add_finish(const SurfacePoint& surface, const vec3& weight) {
 /// Makes each way as probable as the light that it is about to send on.
 void Bsdf::choose_probabilities() {
     const vec3 below = coat_ ? vec3(1) - coat_->at(view_.z) : vec3(1);
-    chance_ = {double(average(diffuse_ * below)),
-               is_glossy_ ? double(average(gloss_.at(view_.z))) : 0, double(average(mirror_)),
-               double(average(through_))};
+    vec3 reflected = gloss_.at(view_.z);
+    if (frosted_ != vec3(0)) // some facets let through where a smooth surface does not
+        reflected = glm::clamp(reflected, vec3(0.1f), vec3(0.9f));
+    const double in_front = double(average(diffuse_ * below));
+    const double diffuse = in_front + double(average(behind_));
+    front_ = diffuse > 0 ? in_front / diffuse : 1;
+    chance_ = {diffuse, is_glossy_ ? double(average(reflected)) : 0, double(average(mirror_)),
+               double(average(through_ + frosted_ * (vec3(1) - reflected)))};
     const double sum = chance_[0] + chance_[1] + chance_[2] + chance_[3];
     for (double& chance : chance_)
         chance = sum > 0 ? std::max(chance, 0.0) / sum : 0;
@@ -212,6 +223,10 @@ dvec3 Bsdf::world(const dvec3& d) const {
 
 bool Bsdf::is_above(const dvec3& towards) const {
     return glm::dot(towards, normal_) > 0 && glm::dot(towards, geometric_) > 0;
+}
+
+bool Bsdf::is_below(const dvec3& towards) const {
+    return glm::dot(towards, normal_) < 0 && glm::dot(towards, geometric_) < 0;
 }
 
 /// Returns evaluate() for `towards` in the frame and above the surface.
@@ -232,18 +247,45 @@ vec3 Bsdf::scattered(const dvec3& towards) const {
 }
 
 double Bsdf::scattered_density(const dvec3& towards) const {
-    double sum = chance_[0] * towards.z * std::numbers::inv_pi;
+    double sum = chance_[0] * front_ * towards.z * std::numbers::inv_pi;
     if (is_glossy_)
         sum += chance_[1] * Microfacets{width_}.density(view_, towards);
     return sum;
 }
 
+/// Returns evaluate() for `towards` in the frame and below the surface.
+vec3 Bsdf::transmitted(const dvec3& towards) const {
+    const vec3 diffuse = behind_ * float(-towards.z * std::numbers::inv_pi);
+    if (frosted_ == vec3(0))
+        return diffuse;
+    const dvec3 half = Microfacets::refracting_facet(view_, towards, gloss_.ior);
+    const double share = 1 - fresnel(glm::dot(view_, half), gloss_.ior);
+    return diffuse + frosted_ * float(share * double(bent_) *
+                                      Microfacets{width_}.refracted(view_, towards, gloss_.ior));
+}
+
+double Bsdf::transmitted_density(const dvec3& towards) const {
+    const double diffuse = chance_[0] * (1 - front_) * -towards.z * std::numbers::inv_pi;
+    return frosted_ == vec3(0)
+               ? diffuse
+               : diffuse +
+                     chance_[3] * Microfacets{width_}.refracted_density(view_, towards, gloss_.ior);
+}
+
 vec3 Bsdf::evaluate(const dvec3& towards) const {
-    return scatters() && is_above(towards) ? scattered(local(towards)) : vec3(0);
+    if (!scatters())
+        return vec3(0);
+    return is_above(towards)   ? scattered(local(towards))
+           : is_below(towards) ? transmitted(local(towards))
+                               : vec3(0);
 }
 
 double Bsdf::density(const dvec3& towards) const {
-    return scatters() && is_above(towards) ? scattered_density(local(towards)) : 0;
+    if (!scatters())
+        return 0;
+    return is_above(towards)   ? scattered_density(local(towards))
+           : is_below(towards) ? transmitted_density(local(towards))
+                               : 0;
 }
 
 /// Chooses a direction by the cosine. Malley's method lifts a point of the disk.
@@ -263,15 +305,26 @@ std::optional<Scattered> Bsdf::sample(double choice, const dvec2& u) const {
     const auto chosen = Scattering(way);
     if (chosen == Scattering::Mirror)
         return Scattered{chosen, {}, mirror_ / float(chance_[way]), 0};
-    if (chosen == Scattering::Through)
+    if (chosen == Scattering::Through && frosted_ == vec3(0))
         return Scattered{chosen, {}, through_ * float(bent_ / chance_[way]), 0};
-    const dvec3 towards =
-        chosen == Scattering::Diffuse ? cosine_way(u) : Microfacets{width_}.reflected_way(view_, u);
+    const bool is_in_front =
+        chosen == Scattering::Diffuse ? choice < front_ * chance_[0] : chosen == Scattering::Glossy;
+    dvec3 towards = cosine_way(u) * dvec3(1, 1, is_in_front ? 1 : -1);
+    if (chosen == Scattering::Glossy)
+        towards = Microfacets{width_}.reflected_way(view_, u);
+    else if (chosen == Scattering::Through)
+        towards = refracted(-view_, Microfacets{width_}.seen_facet(view_, u), 1, gloss_.ior)
+                      .value_or(dvec3(0)); // reflected totally: Glossy has the chance of that
     const dvec3 direction = world(towards);
-    if (!(towards.z > 0) || !is_above(direction))
+    // A facet may send light to the wrong side, where it is lost.
+    if (!(is_in_front ? towards.z > 0 && is_above(direction)
+                      : towards.z < 0 && is_below(direction)))
         return std::nullopt;
-    const double density = scattered_density(towards);
-    return Scattered{chosen, direction, scattered(towards) / float(density), density};
+    const double density = is_in_front ? scattered_density(towards) : transmitted_density(towards);
+    if (!(density > 0))
+        return std::nullopt;
+    const vec3 light = is_in_front ? scattered(towards) : transmitted(towards);
+    return Scattered{chosen, direction, light / float(density), density};
 }
 
 } // namespace ovc

@@ -27,9 +27,9 @@ enum class Scattering : uint8_t { Diffuse, Glossy, Mirror, Through };
 
 struct Scattered {
     Scattering way;
-    dvec3 direction; // of unit length; 0 for Mirror and Through: see mirror_ray(), refracted_ray()
+    dvec3 direction; // of unit length; 0 without density: see mirror_ray(), refracted_ray()
     vec3 weight;     // BSDF x cosine / the probability of the direction
-    double density;  // by solid angle; 0 for Mirror and Through, which have one direction
+    double density;  // by solid angle; 0 where a smooth surface leaves one direction
 };
 
 class Bsdf {
@@ -40,10 +40,10 @@ public:
     vec3 emission() const { return emission_; }
 
     /// Returns whether it scatters light in all directions: then evaluate() is not always 0.
-    bool scatters() const { return diffuse_ != vec3(0) || is_glossy_; }
+    bool scatters() const { return diffuse_ != vec3(0) || behind_ != vec3(0) || is_glossy_; }
 
     /// Returns BSDF x cosine for light from `towards` (of unit length) to the viewer, without light
-    /// that is mirrored or let through.
+    /// that is mirrored or let through by a smooth surface.
     vec3 evaluate(const dvec3& towards) const;
 
     /// Returns the density, by solid angle, with which sample() chooses this direction.
@@ -71,14 +71,19 @@ private:
     void take_shares(const SurfacePoint& surface);
     void choose_probabilities();
     bool is_above(const dvec3& towards) const;
+    bool is_below(const dvec3& towards) const;
     dvec3 local(const dvec3& direction) const;
     dvec3 world(const dvec3& direction) const;
     vec3 scattered(const dvec3& towards) const;
     double scattered_density(const dvec3& towards) const;
+    vec3 transmitted(const dvec3& towards) const;
+    double transmitted_density(const dvec3& towards) const;
 
     dvec3 tangent_, bitangent_, normal_, geometric_;
     dvec3 view_; // towards the viewer, in the frame of tangent_, bitangent_ and normal_
     vec3 diffuse_{0};
+    vec3 behind_{0};                  // diffuse light to the other side
+    double front_ = 1;                // the share of the chance of Diffuse that goes to this side
     std::optional<Reflectance> coat_; // above the diffuse ground
     vec3 coat_scale_{1};              // 1 / (1 - the coat's mean)
     bool is_glossy_ = false;
@@ -86,7 +91,8 @@ private:
     double width_ = 0;
     vec3 mirror_{0};
     vec3 through_{0};
-    float bent_ = 1; // the factor of radiance at the boundary
+    vec3 frosted_{0}; // let through by facets, besides what the boundary of gloss_ reflects
+    float bent_ = 1;  // the factor of radiance at the boundary
     bool is_straight_ = true;
     vec3 emission_{0};
     std::array<double, 4> chance_{}; // of each Scattering; they add up to 1, or all are 0

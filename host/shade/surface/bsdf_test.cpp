@@ -240,6 +240,75 @@ TEST(Bsdf, ChoosesDirectionsAsItsDensitySays) {
         }
 }
 
+/// Returns a surface seen from this side of it, by a cosine and an angle as way() has them.
+SurfacePoint seen_from_inside(const Material& material, double cosine, double phi) {
+    SurfacePoint s = seen_from(material, -way(cosine, phi), /* entering= */ false);
+    s.geometric_normal = s.normal = -s.normal;
+    return s;
+}
+
+/// Frosted glass and a leaf, from the outside and from the inside.
+std::vector<std::pair<std::string, SurfacePoint>> letting_through(double cosine) {
+    static const Material frosted =
+        with_optics(Boundary::Dielectric, vec3(0), vec3(1), 0.4f, vec3(1, 0.5f, 1));
+    static const Material leaf = [] {
+        Material m = with_optics(Boundary::None, vec3(0.2f), vec3(0), 0);
+        m.optics->diffuse_behind = vec3(0.6f);
+        return m;
+    }();
+    return {{"frosted", seen_from(frosted, way(cosine, 1))},
+            {"frosted, from inside", seen_from_inside(frosted, cosine, 1)},
+            {"leaf", seen_from(leaf, way(cosine, 1))},
+            {"leaf, from inside", seen_from_inside(leaf, cosine, 1)}};
+}
+
+/// Radiance falls by the square of the index, so that f / index^2 is the same both ways.
+TEST(Bsdf, FacetsRefractTheSameBothWays) {
+    const Material frosted = with_optics(Boundary::Dielectric, vec3(0), vec3(1), 0.4f, vec3(1));
+    int met = 0;
+    for (const double a : kCosines)
+        for (const double b : kCosines)
+            for (const double phi : {0.1, 1.0, 3.0}) {
+                const vec3 in = Bsdf(seen_from(frosted, way(a, 0))).evaluate(-way(b, phi));
+                const vec3 out = Bsdf(seen_from_inside(frosted, b, phi)).evaluate(way(a, 0));
+                EXPECT_NEAR(in.x * a * 1.5 * 1.5, out.x * b, 1e-4 * (1e-3 + out.x * b))
+                    << a << " " << b << " " << phi;
+                met += in.x > 0;
+            }
+    EXPECT_GT(met, 10);
+}
+
+TEST(Bsdf, SendsLightThroughAsItsDensitySays) {
+    for (const double cosine : {0.3, 0.9})
+        for (const auto& [name, surface] : letting_through(cosine)) {
+            SCOPED_TRACE(name + fmt::format(" at {}", cosine));
+            const Bsdf bsdf(surface);
+            const double side = surface.entering ? -1 : 1; // of the other side of the surface
+            const vec3 expected = integral([&](const dvec3& d) { return bsdf.evaluate(side * d); });
+            const double density = integral([&](const dvec3& d) { return bsdf.density(side * d); });
+            constexpr uint32_t kCount = 1 << 16;
+            dvec3 sum(0);
+            double share = 0, flux = 0;
+            for (uint32_t i = 0; i < kCount; ++i) {
+                const PathSampler random(i, 5, 0);
+                const auto s = bsdf.sample(random.pair(0).x, random.pair(1));
+                if (!s)
+                    continue;
+                EXPECT_NEAR(s->density, bsdf.density(s->direction), 1e-6 * s->density);
+                const bool is_through = glm::dot(s->direction, surface.normal) < 0;
+                const double index = name[0] != 'f' ? 1 : surface.entering ? 1.5 : 1 / 1.5;
+                flux += double(s->weight.x) * (is_through ? index * index : 1) / kCount;
+                sum += is_through ? dvec3(s->weight) / double(kCount) : dvec3(0);
+                share += is_through ? 1.0 / kCount : 0;
+            }
+            EXPECT_NEAR(density, share, 0.01);
+            for (int c = 0; c < 3; ++c)
+                EXPECT_NEAR(sum[c], expected[c], 0.015 * (1 + expected[c]));
+            EXPECT_LT(flux, 1.01);
+            EXPECT_GT(flux, name[0] == 'l' ? 0.79 : 0.65) << "facets hide some light";
+        }
+}
+
 /// The mean weight of samples is the integral of evaluate().
 TEST(Bsdf, WeighsWhatItChooses) {
     for (const BsdfCase& test : scattering()) {
