@@ -294,7 +294,7 @@ Result<Scene> read_assimp(const std::filesystem::path& path, const ImportOptions
         return source->error(added.error().message);
     if (!scene.lights.empty()) {
         scene.exposure = pbrt::fitting_exposure(scene);
-        pbrt::expose(scene, scene.exposure);
+        pbrt::expose(scene, vec3(scene.exposure));
     }
     if (scene.soup.triangle_count() == 0)
         say(options.log, LogLevel::Warning, source->error("it has no triangles").message);

@@ -258,7 +258,7 @@ TEST(PbrtMapping, PathTracingKnowsSurfacesAsTheFileHasThem) {
                                   "conductor.uroughness\" 0.01 \"float conductor.vroughness\" 0.07 "
                                   "\"spectrum conductor.k\" \"metal-Au-k\"");
     EXPECT_NEAR(coat.width, 0.2f, 1e-6f) << "the mean of both, of the metal's own names";
-    EXPECT_EQ(coat.reflection, gold.reflection);
+    expect_color(coat.reflection, {0.988f, 0.724f, 0.252f}, 1e-6f, "gold below a coat");
     const Optics veil = optics_of("Material \"uber\" \"color opacity\" [.25 .25 .25]");
     EXPECT_EQ(veil.boundary, Boundary::None);
     expect_color(veil.through, vec3(0.75f), 1e-6f, "holes");
@@ -325,6 +325,68 @@ TEST(PbrtMapping, MaterialsAreMixedColorByColor) {
         "Material \"mix\" \"string namedmaterial1\" \"a\" \"string namedmaterial2\" \"b\" "
         "\"rgb amount\" [.25 .5 1]");
     expect_color(mixed.color, {0.25f, 0.5f, 1}, 1e-6f, "mixed");
+}
+
+/// Of two that are no one surface, hits meet the one or the other.
+TEST(PbrtMapping, AMixOfTwoThatShineIsMadeOfBoth) {
+    const Scene scene = scene_of(
+        std::string("MakeNamedMaterial \"r\" \"string type\" \"mirror\" MakeNamedMaterial \"g\" "
+                    "\"string type\" \"glass\" Material \"mix\" \"string materials\" "
+                    "[\"r\" \"g\"] \"float amount\" 0.25") +
+        kMesh);
+    const Material& mixed = scene.materials[scene.meshes.at(0).material];
+    ASSERT_TRUE(mixed.mix);
+    const std::vector<TextureStop>& stops = scene.textures[mixed.mix->texture].stops;
+    ASSERT_EQ(stops.size(), 2u);
+    EXPECT_EQ(scene.materials[stops[0].texture].name, "r");
+    EXPECT_EQ(stops[0].at, 0.75);
+    EXPECT_EQ(scene.materials[stops[1].texture].name, "g");
+    EXPECT_EQ(stops[1].at, 0.25);
+}
+
+TEST(PbrtMapping, LightGoesThroughLeavesAndFrostedGlass) {
+    const Material leaf = material_of("Material \"diffusetransmission\" \"rgb transmittance\" "
+                                      "[.4 .2 .1] \"float scale\" .5");
+    expect_color(leaf.optics->diffuse_behind, {0.2f, 0.1f, 0.05f}, 1e-6f, "v4");
+    EXPECT_GT(leaf.finish->diffuse_back, 0);
+    const Material cloth = material_of("Material \"translucent\" \"rgb Kd\" [.4 .4 .8] \"rgb "
+                                       "transmit\" [1 .5 .25]");
+    expect_color(cloth.optics->diffuse_behind, {0.4f, 0.2f, 0.2f}, 1e-6f, "v3");
+    const auto width = [](const char* text) { return material_of(text).optics->width; };
+    EXPECT_NEAR(width("Material \"dielectric\" \"float roughness\" .04"), 0.2f, 1e-6f);
+    EXPECT_EQ(width("Material \"dielectric\""), 0);
+    EXPECT_EQ(width("Material \"glass\""), 0);
+    EXPECT_NEAR(width("Material \"glass\" \"float uroughness\" .09 \"float vroughness\" .09"),
+                0.4349f, 1e-4f);
+    EXPECT_EQ(width("Material \"uber\" \"rgb Kt\" [.5 .5 .5]"), 0) << "its glass is clear";
+}
+
+TEST(PbrtMapping, GlassIsFilledWithWhatAbsorbs) {
+    const std::string medium = "MakeNamedMedium \"m\" \"string type\" \"homogeneous\" \"rgb "
+                               "sigma_a\" [4 1 0] \"float scale\" .5 \"rgb sigma_s\" ";
+    const std::string in_glass = " MediumInterface \"m\" \"\" Material \"dielectric\"";
+    const Material tinted = material_of(medium + "[0 0 0]" + in_glass);
+    ASSERT_TRUE(tinted.absorption);
+    expect_color((vec3(1) - tinted.absorption->color) / tinted.absorption->distance, {2, 0.5f, 0},
+                 1e-6f, "absorbed per length");
+    EXPECT_GE(tinted.absorption->power, 1000);
+    EXPECT_FALSE(material_of(medium + "[1 0 0]" + in_glass).absorption) << "it scatters";
+    EXPECT_FALSE(material_of(medium + "[0 0 0] MediumInterface \"m\" \"\"").absorption);
+}
+
+TEST(PbrtMapping, SpectraMayStandInFiles) {
+    const TestFolder folder;
+    folder.write("half.spd", "# nm and value\n300 .5\n900 .5\n");
+    folder.write("no.spd", "300 .5\n900 half\n");
+    const auto color_of = [&](const std::string& file) {
+        const Result<Scene> scene = load(
+            folder.write("a.pbrt", "Material \"matte\" \"spectrum Kd\" \"" + file + "\"" + kMesh));
+        return scene ? scene->materials[scene->meshes.at(0).material].color : vec3(-1);
+    };
+    expect_color(color_of("half.spd"), vec3(0.5f), 1e-4f, "in a file");
+    folder.write("quarter.spd", "300 .25\n900 .25\n");
+    expect_color(color_of("quarter.spd"), vec3(0.25f), 1e-4f, "in another");
+    expect_color(color_of("no.spd"), vec3(0.5f), 1e-6f, "the default");
 }
 
 /// Half of white paint and half of a mirror reflect all light, whichever of them is first.

@@ -58,7 +58,7 @@ Result<Scene> read_pbrt(const std::filesystem::path& path, const ImportOptions& 
     scene.omissions = diagnostics.omissions();
     assert(streamed || has_sound_meshes(scene));
     if (const float exposure = output.exposure(); exposure != 1) {
-        pbrt::expose(scene, exposure);
+        pbrt::expose(scene, vec3(exposure));
         scene.exposure = exposure;
     }
     scene.instancing = {census.unique, census.instances};

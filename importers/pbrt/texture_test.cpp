@@ -483,5 +483,67 @@ TEST(PbrtTexture, AProjectionLightThrowsItsPictureThroughAWindow) {
     EXPECT_FALSE(bare.scene.lights.at(0).thrown);
 }
 
+/// v4's "power" and "illuminance" count per light of the picture.
+TEST(PbrtTexture, LightsWithPicturesHaveTheLightThatTheirFilesSay) {
+    using Measure = ImageTexture::Measure;
+    const double pi = std::numbers::pi;
+    const auto lit = [](const std::string& light) {
+        TexturedScene read = read_textured(light + kTexturedTriangle);
+        EXPECT_TRUE(read.warnings.empty()) << read.warnings[0];
+        return read;
+    };
+    const auto strength = [](const TexturedScene& read) { // from the distance 1
+        const Light& light = read.scene.lights.at(0);
+        return double(light.color.x / read.scene.exposure) * 2 * light.fade_distance *
+               light.fade_distance;
+    };
+    const TexturedScene gonio =
+        lit("LightSource \"goniometric\" \"string filename\" \"g.png\" \"float power\" 5");
+    EXPECT_EQ(gonio.image(gonio.scene.lights[0].thrown->texture.texture).per, Measure::Mean);
+    EXPECT_NEAR(strength(gonio), 5 / (4 * pi), 1e-4);
+    const TexturedScene slide =
+        lit("LightSource \"projection\" \"string filename\" \"g.png\" \"float power\" 5 "
+            "\"float fov\" 60");
+    const ImageTexture& thrown = slide.image(slide.scene.lights[0].thrown->texture.texture);
+    EXPECT_EQ(thrown.per, Measure::ThroughWindow);
+    EXPECT_NEAR(thrown.window_distance, std::sqrt(3.0), 1e-12);
+    EXPECT_NEAR(strength(slide), 5, 1e-3);
+    const TexturedScene sky = lit("LightSource \"infinite\" \"string filename\" \"g.png\" "
+                                  "\"float illuminance\" 3 \"float scale\" 2");
+    const ImageTexture& map = sky.image(sky.scene.background.layers.at(0).texture);
+    EXPECT_EQ(map.per, Measure::FromAbove);
+    EXPECT_NEAR(map.scale.x / sky.scene.exposure, 2 * 3 * 2, 1e-4) << "pbrt's half texels";
+    const TexturedScene screen = lit("AreaLightSource \"diffuse\" \"string filename\" "
+                                     "\"g.png\" \"float power\" 3");
+    ASSERT_TRUE(screen.material().maps);
+    EXPECT_EQ(screen.image(screen.material().maps->emission).per, Measure::Mean);
+    EXPECT_TRUE(screen.scene.textures[screen.material().maps->emission].on_uv);
+    EXPECT_EQ(screen.scene.meshes[0].uv.size(), 3u);
+    EXPECT_NEAR(screen.material().optics->emission.x / screen.scene.exposure, 3 / (pi * 0.5), 1e-4);
+}
+
+/// Of two skies neither hides the other.
+TEST(PbrtTexture, SkiesAddUp) {
+    const TexturedScene read =
+        read_textured("LightSource \"infinite\" \"string filename\" \"sky.exr\" "
+                      "LightSource \"infinite\" \"rgb L\" [0.1 0.2 0.3]" +
+                      std::string(kTexturedTriangle));
+    EXPECT_TRUE(read.scene.background.layers_add);
+    expect_near(read.scene.background.zenith / read.scene.exposure, {0.1f, 0.2f, 0.3f});
+    const TexturedScene one = read_textured("LightSource \"infinite\" \"string filename\" "
+                                            "\"sky.exr\"" +
+                                            std::string(kTexturedTriangle));
+    EXPECT_FALSE(one.scene.background.layers_add);
+}
+
+TEST(PbrtTexture, AMetalHasTheColorOfItsTexture) {
+    const TexturedScene metal = read_textured(
+        "Texture \"t\" \"spectrum\" \"checkerboard\" \"rgb tex1\" [0.8 0.2 0.1] \"rgb tex2\" "
+        "[0.2 0.4 0.7] Material \"conductor\" \"texture reflectance\" \"t\"" +
+        std::string(kTexturedTriangle));
+    ASSERT_TRUE(metal.material().maps);
+    expect_near(metal.material().optics->reflection, vec3(1));
+}
+
 } // namespace
 } // namespace ovc

@@ -41,7 +41,8 @@ struct GraphicsState {
     uint32_t material = 0;
     std::optional<Emission> emission;
     bool reversed = false;
-    dmat3 to_srgb{1};                                     // from the color space of "rgb"
+    std::optional<vec3> absorbed_inside; // per length in the medium inside, which only absorbs
+    dmat3 to_srgb{1};                    // from the color space of "rgb"
     std::shared_ptr<const std::vector<Default>> defaults; // by Attribute, or null
     /// The meaning that names of textures and materials had where the scope began.
     struct Names {

@@ -35,7 +35,7 @@ const Interpreter::Directive Interpreter::kDirectives[] = {
     {"LightSource", &Interpreter::light_source},
     {"LookAt", &Interpreter::look_at},
     {"MakeNamedMaterial", &Interpreter::make_named_material},
-    {"MakeNamedMedium", &Interpreter::medium},
+    {"MakeNamedMedium", &Interpreter::make_named_medium},
     {"Material", &Interpreter::material},
     {"MediumInterface", &Interpreter::medium_interface},
     {"NamedMaterial", &Interpreter::named_material},

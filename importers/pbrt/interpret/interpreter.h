@@ -96,6 +96,8 @@ private:
     bool film();
     bool color_space();
     bool medium();
+    bool make_named_medium();
+    void tell_media();
     bool medium_interface();
     /// Skips a directive that says how to compute a picture, not what is in the scene.
     bool setting();
@@ -124,6 +126,7 @@ private:
 
     StateStack state_;
     std::unordered_map<std::string, Transforms> systems_;
+    std::unordered_map<std::string, vec3> absorbing_; // media by name, and what they absorb
     Textures textures_{diagnostics_, tokens_};
     Alphas alphas_{textures_, tokens_, diagnostics_};
     Materials materials_{textures_, diagnostics_};

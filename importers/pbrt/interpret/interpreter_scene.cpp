@@ -70,7 +70,8 @@ std::optional<Sight> Interpreter::sight_of(const Parameters& parameters) {
     if (sight.cutout == kNone && !state_.now.emission)
         sight.cutout = alphas_.of_texture(materials_.holes(material));
     sight.wants_uv = sight.cutout != kNone || sight.shadow_cutout != kNone ||
-                     (!state_.now.emission && materials_.wants_uv(material));
+                     (state_.now.emission ? state_.now.emission->picture.has_value()
+                                          : materials_.wants_uv(material));
     if (shadow.is_zero)
         sight.seen_by &= ~uint32_t(kShadowsAll);
     if (state_.now.emission && building_.empty()) // the lights that stand for it lie in it
@@ -96,10 +97,13 @@ bool Interpreter::add_shape(Mesh mesh, const Sight& sight) {
                                 "allows more",
                                 triangles_, options_.max_triangles));
     Shape shape{std::move(mesh), now_at(now.transforms), now.material, now.reversed, sight};
+    if (now.absorbed_inside && is_clear(materials_.all()[now.material]))
+        shape.material = materials_.filled(now.material, *now.absorbed_inside);
+    else if (now.absorbed_inside)
+        tell_media();
     if (now.emission && building_.empty()) {
         const vec3 radiance = radiance_of(*now.emission, shape);
-        shape.material =
-            materials_.emitter(now.material, radiance, now.emission->two_sided, place_);
+        shape.material = materials_.emitter(now.material, *now.emission, radiance, place_);
         lights_.add_area(shape, radiance, now.emission->two_sided);
     } else if (now.emission) {
         diagnostics_.approximate("emitting objects", place_, "emission of instances left out");
@@ -188,7 +192,7 @@ bool Interpreter::area_light_source() {
     if (type == "none")
         state_.now.emission.reset();
     else if (type == "diffuse" || type == "area") {
-        state_.now.emission = lights_.emission(parameters);
+        state_.now.emission = lights_.emission(parameters, place_);
         tell_left_over(parameters, "area lights", type, diagnostics_);
     } else
         diagnostics_.missing("area light " + type, place_,
@@ -244,12 +248,51 @@ bool Interpreter::medium() {
     Parameters parameters;
     if (!read_typed(type, parameters, "medium"))
         return false;
-    diagnostics_.approximate("medium", place_, "fog, smoke and other media left out");
+    tell_media();
     return true;
 }
 
+void Interpreter::tell_media() {
+    diagnostics_.approximate("medium", place_, "fog, smoke and other media left out");
+}
+
+/// Glass may be filled with a medium that scatters nothing; all others are left out.
+bool Interpreter::make_named_medium() {
+    std::string name;
+    Parameters parameters;
+    if (!read_typed(name, parameters, "medium"))
+        return false;
+    const auto color = [&](const char* of, const vec3& otherwise) {
+        return textures_.color(parameters, of, otherwise) * float(parameters.number("scale", 1));
+    };
+    const vec3 absorbed = color("sigma_a", {0.0011f, 0.0024f, 0.014f});
+    const bool scatters = color("sigma_s", {2.55f, 3.21f, 3.77f}) != vec3(0);
+    if (parameters.text("type") == "homogeneous" && !scatters && max_component(absorbed) > 0 &&
+        !parameters.find("Le") && !parameters.find("preset"))
+        absorbing_[name] = glm::max(absorbed, vec3(0));
+    else
+        tell_media();
+    return true;
+}
+
+/// Names the media inside and outside of the shapes that follow; one name is that of both.
 bool Interpreter::medium_interface() {
-    return pass_over();
+    std::string inside;
+    if (!read_text(inside))
+        return false;
+    std::string outside = inside;
+    if (!tokens_.next())
+        return false;
+    if (tokens_.token().kind == TokenKind::Text)
+        outside = tokens_.token().text;
+    else
+        tokens_.again();
+    const auto found = absorbing_.find(inside);
+    state_.now.absorbed_inside =
+        found != absorbing_.end() ? std::optional(found->second) : std::nullopt;
+    if (absorbing_.contains(outside))
+        tell_media();
+    return true;
 }
 
 bool Interpreter::setting() {

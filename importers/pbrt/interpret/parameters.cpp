@@ -2,6 +2,7 @@
 // Parameters::read() reads the declarations of v1 to v4: one value, or a list in brackets.
 #include "importers/pbrt/interpret/parameters.h"
 
+#include "importers/file/source.h"
 #include "importers/file/text.h"
 
 #include <fmt/format.h>
@@ -25,6 +26,28 @@ constexpr TypeName kTypes[] = {
     {"normal", Kind::Normal},     {"normal3", Kind::Normal},  {"color", Kind::Rgb},
     {"rgb", Kind::Rgb},           {"xyz", Kind::Xyz},         {"blackbody", Kind::Blackbody},
     {"spectrum", Kind::Spectrum}, {"string", Kind::String},   {"texture", Kind::Texture}};
+
+/// The max number of values that a spectrum's file may have.
+constexpr size_t kMaxSamples = 100'000;
+
+/// Returns the pairs of wavelength and value that a file holds, with comments behind '#'; nothing
+/// if it holds anything else.
+std::vector<double> samples_in(const std::filesystem::path& path, FilesRead* files) {
+    Result<Source> file = Source::open(path, files);
+    std::vector<double> samples;
+    while (const auto line = file ? file->line() : std::nullopt) {
+        std::string_view rest = line->substr(0, line->find('#'));
+        for (std::string_view word = next_word(rest); !word.empty(); word = next_word(rest)) {
+            const auto number = parse_double(word);
+            if (!number || !std::isfinite(*number) || samples.size() >= kMaxSamples)
+                return {};
+            samples.push_back(*number);
+        }
+    }
+    if (samples.size() % 2 != 0 || (file && file->is_damaged()))
+        return {};
+    return samples;
+}
 
 const TypeName* type_of(std::string_view name) {
     for (const TypeName& type : kTypes)
@@ -125,6 +148,9 @@ bool Parameters::read_values(Tokens& tokens, Diagnostics& diagnostics, Parameter
         if (!tokens.next())
             return false;
     }
+    if (parameter.kind == Kind::Spectrum && !parameter.strings.empty())
+        if (const auto path = tokens.find(parameter.strings[0]))
+            parameter.numbers = samples_in(*path, tokens.files_read());
     const bool is_text = parameter.kind == Kind::String || parameter.kind == Kind::Texture;
     if (is_text ? !parameter.numbers.empty()
                 : parameter.kind != Kind::Spectrum && !parameter.strings.empty())

@@ -45,9 +45,9 @@ double light_of(uint16_t sample, bool linear) {
     return double(linear ? code : linear_light(code, kSrgbGamma));
 }
 
-/// Returns the opacity of the pixels: their own, where the picture has any, as in pbrt-v4; else
-/// their mean color.
-std::vector<uint8_t> opacity_of(const Picture& picture, bool inverted, bool linear) {
+/// Returns the opacity of the pixels: their own, where the picture has any, as in pbrt-v4, which
+/// takes it for a code as colors are; else their mean color.
+std::vector<uint8_t> opacity_of(const Picture& picture, bool inverted, bool linear, bool is_v4) {
     const bool has_opacity =
         std::ranges::any_of(picture.pixels, [](const auto& pixel) { return pixel[3] != 65535; });
     std::vector<uint8_t> opacity;
@@ -55,7 +55,7 @@ std::vector<uint8_t> opacity_of(const Picture& picture, bool inverted, bool line
     for (const auto& pixel : picture.pixels) {
         double value = 0;
         if (has_opacity)
-            value = pixel[3] / 65535.0;
+            value = light_of(pixel[3], linear || !is_v4);
         else
             for (size_t i = 0; i < 3; ++i)
                 value += light_of(pixel[i], linear) / 3;
@@ -214,7 +214,8 @@ bool Alphas::read_picture(Pattern& pattern) {
     }
     pattern.cutout.width = picture->width;
     pattern.cutout.height = picture->height;
-    pattern.cutout.opacity = opacity_of(*picture, pattern.inverted, pattern.linear);
+    pattern.cutout.opacity =
+        opacity_of(*picture, pattern.inverted, pattern.linear, textures_.is_v4());
     return true;
 }
 

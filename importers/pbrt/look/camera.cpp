@@ -68,7 +68,9 @@ Film read_film(const Parameters& parameters, bool is_v4, Diagnostics& diagnostic
     const double exposed =
         parameters.number("exposuretime", 1) * parameters.number("iso", 100) / 100;
     const double exposure = scale * exposed;
-    film.exposure = exposure > 1e-30 && exposure < 1e30 ? float(exposure) : 1;
+    film.exposure = vec3(exposure > 1e-30 && exposure < 1e30 ? float(exposure) : 1);
+    if (const double kelvin = is_v4 ? parameters.number("whitebalance", 0) : 0; kelvin > 0)
+        film.exposure *= white_balance(kelvin);
     return film;
 }
 

@@ -13,7 +13,7 @@ struct Film {
     ImageSize size{640, 480};
     bool has_size = false;           // whether the file gave it
     std::optional<PicturePart> part; // that is rendered; none: all
-    float exposure = 1;              // the factor on all light
+    vec3 exposure{1};                // the factor on all light
 };
 
 /// Fails on a size, or a part of the picture, that is none. v4 has a size where the file says none.

@@ -140,6 +140,8 @@ std::optional<uint32_t> Textures::make_image(const TextureRequest& request) {
     picture.beyond_s = picture.beyond_t = beyond_of(p);
     picture.filter = filter_of(p);
     picture.gamma = gamma_of(p);
+    if (request.is_float && is_v4_) // the opacity is the number there
+        picture.channel = ImageTexture::Channel::CodedMask;
     const bool inverted = p.flag("invert", false);
     picture.scale = vec3(float(p.number("scale", 1)) * (inverted ? -1 : 1));
     picture.offset = vec3(inverted ? 1 : 0);
@@ -351,6 +353,13 @@ uint32_t Textures::mix(const TextureStop& low, const TextureStop& high, const Te
     mix.kind = TextureKind::Mix;
     mix.stops = {low, high, share};
     return add_texture(scene_, std::move(mix));
+}
+
+uint32_t Textures::average(std::vector<TextureStop> stops) {
+    Texture average;
+    average.pattern.kind = Pattern::Kind::Average;
+    average.stops = std::move(stops);
+    return add_texture(scene_, std::move(average));
 }
 
 bool Textures::is_on_uv(uint32_t texture) const {

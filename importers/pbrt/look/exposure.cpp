@@ -124,7 +124,7 @@ float fitting_exposure(const Scene& scene) {
     return meter.exposure();
 }
 
-void expose(Scene& scene, float exposure) {
+void expose(Scene& scene, const vec3& exposure) {
     for (Light& light : scene.lights)
         light.color *= exposure;
     scene.background.horizon *= exposure;

@@ -30,6 +30,6 @@ private:
 float fitting_exposure(const Scene& scene);
 
 /// Multiplies the light of lights, sky and emitters.
-void expose(Scene& scene, float exposure);
+void expose(Scene& scene, const vec3& exposure);
 
 } // namespace ovc::pbrt

@@ -29,11 +29,29 @@ double cosine(double degrees) {
     return std::cos(degrees * (pi / 180));
 }
 
+/// Returns how much longer some ways become by a transform than others.
+double stretch_of(const dmat4& m) {
+    double longest = 0, shortest = 1e300;
+    for (int x = -1; x <= 1; ++x)
+        for (int y = -1; y <= 1; ++y)
+            for (int z = -1; z <= 1; ++z)
+                if (const dvec3 way(x, y, z); way != dvec3(0)) {
+                    const double length = glm::length(vector_through(m, way)) / glm::length(way);
+                    longest = std::max(longest, length);
+                    shortest = std::min(shortest, length);
+                }
+    return shortest > 0 ? longest / shortest : 1e300;
+}
+
+/// Returns whether v4's "power" or "illuminance" is stated.
+bool asks_for(const Parameters& p, std::string_view name) {
+    return p.number(name, -1) > 0;
+}
+
 /// Returns what v4's "power" or "illuminance" multiplies a light's color by. of_one: what a light
 /// of color 1 gives. A color in rgb counts as it is, as in pbrt.
 float factor_of(const Parameters& p, std::string_view name, double of_one) {
-    const double wanted = p.number(name, -1);
-    return wanted > 0 ? float(wanted / of_one) : 1;
+    return asks_for(p, name) ? float(p.number(name, -1) / of_one) : 1;
 }
 
 } // namespace
@@ -93,15 +111,12 @@ static ImageTexture around(bool is_octahedral) {
         map.to_picture = {dvec3(1, 0, 0), dvec3(0, -1, 1)};
     map.beyond_s = is_octahedral ? Beyond::Clamp : Beyond::Repeat;
     map.beyond_t = Beyond::Clamp;
-    map.filter = TexelFilter::Smooth;
+    map.filter = is_octahedral ? TexelFilter::Nearest : TexelFilter::Smooth; // as in v4 and v3
     return map;
 }
 
 ThrownPicture Lights::thrown(const Parameters& p, const dmat3& to_light,
                              const ImageTexture& picture, const Place& place) {
-    if (p.find("power"))
-        diagnostics_.approximate("power of a picture", place,
-                                 "lights with pictures have the power of a white picture's");
     ThrownPicture thrown;
     thrown.texture.texture =
         textures_.image(p.text(picture_of(p)), place, picture, /* on_uv= */ false);
@@ -119,8 +134,11 @@ void Lights::add_goniometric(const Parameters& p, const dmat4& to_world, const P
     const bool is_v4 = p.find("filename") != nullptr;
     ImageTexture picture = around(is_v4);
     picture.otherwise = {vec3(1)};
-    if (is_v4) // it has brightness alone there
+    if (is_v4) { // it has brightness alone there
         picture.channel = ImageTexture::Channel::Mean;
+        if (asks_for(p, "power"))
+            picture.per = ImageTexture::Measure::Mean;
+    }
     const dmat3 upright(dvec3(1, 0, 0), dvec3(0, 0, 1), dvec3(0, 1, 0));
     lights_.back().thrown = thrown(p, upright * glm::inverse(dmat3(to_world)), picture, place);
 }
@@ -139,10 +157,15 @@ void Lights::add_projection(const Parameters& p, const dmat4& to_world, const Pl
     if (!is_v4)
         picture.to_picture = {dvec3(1, 0, 0), dvec3(0, -1, 1)};
     picture.beyond_s = picture.beyond_t = Beyond::Clamp;
-    picture.filter = TexelFilter::Smooth;
+    picture.filter = is_v4 ? TexelFilter::Nearest : TexelFilter::Smooth;
     picture.otherwise = {vec3(1)};
     const double angle = std::clamp(p.number("fov", is_v4 ? 90 : 45), 1e-3, 179.9);
     const double by_side = 1 / std::tan(angle * (pi / 360));
+    if (asks_for(p, "power")) {
+        lights_.back().color *= 4 * pi; // it shines through the window alone
+        picture.per = ImageTexture::Measure::ThroughWindow;
+        picture.window_distance = by_side;
+    }
     const dmat3 to_window(dvec3(by_side, 0, 0), dvec3(0, by_side, 0), dvec3(0, 0, 1));
     lights_.back().thrown = thrown(p, to_window * glm::inverse(dmat3(to_world)), picture, place);
     lights_.back().thrown->has_window = true;
@@ -164,6 +187,9 @@ void Lights::add_spot(const Parameters& p, const dmat4& to_world, const Place& p
     const double angle = p.number("coneangle", p.number("fov", 30));
     const double soft = p.number("conedeltaangle", 5);
     light.cone = SpotCone{cosine(std::max(angle - soft, 0.0)), cosine(std::min(angle, 180.0)), 0};
+    if (stretch_of(to_world) > 1.001)
+        diagnostics_.approximate("stretched spot", place,
+                                 "the cones of spots stay round where space is stretched");
     // pbrt takes half of the soft edge as lit.
     const double lit = 2 * pi * (1 - (cosine(angle - soft) + cosine(angle)) / 2);
     set_falloff(light, factor_of(p, "power", lit) * scaled(p, "I", vec3(1)));
@@ -185,16 +211,18 @@ void Lights::add_distant(const Parameters& p, const dmat4& to_world, const Place
 
 /// A map is a layer before a sky of even colors, which Whitted's model takes ambient light from.
 void Lights::add_infinite(const Parameters& p, const dmat4& to_world, const Place& place) {
-    const bool has_map = p.find("mapname") || p.find("filename");
-    const float factor = has_map ? 1 : factor_of(p, "illuminance", pi);
-    const vec3 radiance = factor * scaled(p, "L", vec3(1));
+    const bool has_map = picture_of(p) != nullptr;
+    const vec3 radiance = factor_of(p, "illuminance", pi) * scaled(p, "L", vec3(1));
     const Background colors; // the default sky, of luminance about 1/2 to 1
     if (!sky_)
         sky_ = Background{vec3(0), vec3(0)};
     sky_->horizon += radiance * (has_map ? colors.horizon : vec3(1));
     sky_->zenith += radiance * (has_map ? colors.zenith : vec3(1));
+    ++skies_;
     if (has_map)
         add_map(p, radiance, to_world, place);
+    else
+        even_sky_ += radiance;
 }
 
 void Lights::add_map(const Parameters& p, const vec3& radiance, const dmat4& to_world,
@@ -202,6 +230,10 @@ void Lights::add_map(const Parameters& p, const vec3& radiance, const dmat4& to_
     const bool is_octahedral = !p.find("mapname");
     ImageTexture map = around(is_octahedral);
     map.scale = radiance;
+    if (asks_for(p, "illuminance")) { // pbrt counts each texel as half as large as it is
+        map.scale *= float(2 * pi);
+        map.per = ImageTexture::Measure::FromAbove;
+    }
     map.otherwise = {vec3(0), 0, 1}; // the sky behind it is seen
     const uint32_t texture = textures_.image(p.text(is_octahedral ? "filename" : "mapname"), place,
                                              map, /* on_uv= */ false);
@@ -212,12 +244,21 @@ void Lights::add_map(const Parameters& p, const vec3& radiance, const dmat4& to_
     sky_->layers.push_back(layer);
 }
 
-std::optional<Emission> Lights::emission(const Parameters& p) const {
+Emission Lights::emission(const Parameters& p, const Place& place) const {
     Emission emission;
     emission.radiance = scaled(p, "L", vec3(1));
     emission.two_sided = p.flag("twosided", false);
-    if (const double power = p.number("power", -1); power > 0)
-        emission.power = power;
+    if (asks_for(p, "power"))
+        emission.power = p.number("power", -1);
+    const std::string file = p.text("filename");
+    if (file.empty())
+        return emission;
+    ImageTexture picture;
+    picture.filter = TexelFilter::Smooth;
+    picture.otherwise = {vec3(1)};
+    if (emission.power)
+        picture.per = ImageTexture::Measure::Mean;
+    emission.picture = textures_.image(file, place, picture, /* on_uv= */ true);
     return emission;
 }
 
@@ -259,6 +300,10 @@ void Lights::finish(const dvec3& view_up, Scene& scene) {
     scene.lights.insert(scene.lights.end(), area_lights_.begin(), area_lights_.end());
     scene.background = sky_.value_or(Background{vec3(0), vec3(0)});
     sky_mean_ = 0.5f * (scene.background.horizon + scene.background.zenith);
+    if (skies_ > 1 && !scene.background.layers.empty()) {
+        scene.background.horizon = scene.background.zenith = even_sky_;
+        scene.background.layers_add = true;
+    }
     if (sky_) {
         Light above;
         above.parallel = above.distant = true;

@@ -12,7 +12,8 @@ namespace ovc::pbrt {
 struct Emission {
     vec3 radiance{1};
     bool two_sided = false;
-    std::optional<double> power; // v4's, which each shape sends out that pbrt makes of a mesh
+    std::optional<double> power;     // v4's, which each shape sends out that pbrt makes of a mesh
+    std::optional<uint32_t> picture; // a texture on uv that multiplies the radiance
 };
 
 /// Returns the radiance that an emitting shape sends out.
@@ -26,7 +27,7 @@ public:
     /// Returns false, after a warning, for a type that is not known.
     bool add(const std::string& type, const Parameters& parameters, const dmat4& to_world,
              const Place& place);
-    std::optional<Emission> emission(const Parameters& parameters) const;
+    Emission emission(const Parameters& parameters, const Place& place) const;
     /// Adds an emitting shape, which its transform places in the world. radiance: what it sends out
     /// everywhere.
     void add_area(const Shape& shape, const vec3& radiance, bool two_sided);
@@ -53,6 +54,8 @@ private:
     std::vector<Light> lights_;
     std::vector<Light> area_lights_;
     std::optional<Background> sky_; // with its maps as layers
+    vec3 even_sky_{0};              // its light without them
+    int skies_ = 0;
     vec3 sky_mean_{0};
     bool any_ = false; // whether the file has a light of any kind
 };

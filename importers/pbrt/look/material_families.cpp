@@ -61,6 +61,9 @@ std::optional<double> stated_ior(const MaterialContext& c) {
             continue;
         if (const auto glass = p->strings.empty() ? std::nullopt : glass_ior(p->strings[0]))
             return glass;
+        if (p->kind == Kind::Spectrum && p->numbers.size() > 2)
+            c.diagnostics.approximate("index of a spectrum", c.place,
+                                      "glass has the same index of refraction for all colors");
         const double ior = c.number(name, 1.5);
         return is_usable_ior(ior) ? std::optional(ior) : std::nullopt;
     }
@@ -88,13 +91,11 @@ void take_reflection(const MaterialContext& c, std::string_view name, Material& 
     if (!m.maps)
         m.maps.emplace();
     m.maps->reflection = *texture;
-    const float mean_color = mean(c.color(name, 0.5f));
-    if (!(mean_color > 0))
-        return;
-    m.optics->reflection /= mean_color;
-    m.finish->specular /= mean_color;
-    m.finish->reflection /= mean_color;
-    m.finish->grazing_reflection /= mean_color;
+    const vec3 color = glm::max(c.color(name, 0.5f), vec3(1e-3f));
+    m.optics->reflection /= color;
+    m.finish->specular /= mean(color);
+    m.finish->reflection /= color;
+    m.finish->grazing_reflection /= color;
 }
 
 /// Reads the color from the parameter `reflectance`, whose name depends on the version. share: of
@@ -166,8 +167,8 @@ Material make_mirror(const MaterialContext& c) {
     return m;
 }
 
-/// If is_thin, the glass has no thickness, and light goes straight on.
-Material make_glass(const MaterialContext& c, bool is_thin) {
+/// If is_thin, the glass has no thickness, and light goes straight on. width: of its facets.
+Material make_glass(const MaterialContext& c, bool is_thin, double width = 0) {
     Material m;
     m.color = vec3(0);
     m.mirror = 1;
@@ -177,12 +178,11 @@ Material make_glass(const MaterialContext& c, bool is_thin) {
     m.finish->diffuse = 0;
     m.finish->conserve_energy = true;
     const double ior = stated_ior(c).value_or(1.5);
-    if (roughness_of(c, 0) > 0)
-        c.diagnostics.approximate("rough glass", c.place, "rough glass is shown smooth");
     m.optics = Optics{.boundary = is_thin ? Optics::Boundary::Thin : Optics::Boundary::Dielectric,
                       .reflection = c.color("Kr", 1),
                       .through = m.filter,
-                      .ior = ior};
+                      .ior = ior,
+                      .width = float(width)};
     if (is_thin) {
         const double r = (ior - 1) * (ior - 1) / ((ior + 1) * (ior + 1));
         m.finish->reflection = vec3(float(2 * r / (1 + r))) * c.color("Kr", 1);
@@ -196,26 +196,45 @@ Material make_glass(const MaterialContext& c, bool is_thin) {
 }
 
 Material make_thick_glass(const MaterialContext& c) {
-    return make_glass(c, c.p.flag("thin", false));
+    const double roughness = roughness_of(c, 0);
+    return make_glass(c, c.p.flag("thin", false),
+                      roughness > 0 ? width_before_v4(c, roughness) : 0);
+}
+
+Material make_dielectric(const MaterialContext& c) {
+    return make_glass(c, /* is_thin= */ false, width_of(c, roughness_of(c, 0)));
 }
 
 Material make_thin_glass(const MaterialContext& c) {
     return make_glass(c, true);
 }
 
-vec3 metal_of(const MaterialContext& c, const std::string& of = {}) {
-    if (c.p.find("reflectance"))
-        return c.color("reflectance", 0.9f);
+/// The eta and k of a metal, or its name.
+struct MetalOf {
+    std::string name;
+    vec3 eta{1}, k{0};
+};
+
+/// of: what stands before the names of the parameters.
+MetalOf metal_of(const MaterialContext& c, const std::string& of = {}) {
+    if (c.p.find("reflectance")) { // as pbrt makes a metal of it
+        const vec3 r = glm::min(c.color("reflectance", 0.9f), vec3(0.9999f));
+        return {{}, vec3(1), 2.0f * glm::sqrt(r / (vec3(1) - r))};
+    }
     const std::string eta = of + "eta", k = of + "k";
     for (const Parameter* const p : {c.p.find(eta), c.p.find(k)})
-        if (p && !p->strings.empty())
-            if (const auto color = metal_color(p->strings[0]))
-                return *color;
+        if (p && !p->strings.empty() && metal_color(p->strings[0]))
+            return {p->strings[0]};
     if (!c.p.find(eta) && !c.p.find(k))
-        return *metal_color("Cu");
-    return glm::clamp(metal_color(c.textures.color(c.p, eta, vec3(0.2f, 0.9f, 1.1f)),
-                                  c.textures.color(c.p, k, vec3(3.9f, 2.5f, 2.3f))),
-                      vec3(0), vec3(1));
+        return {"Cu"};
+    return {{},
+            c.textures.color(c.p, eta, vec3(0.2f, 0.9f, 1.1f)),
+            c.textures.color(c.p, k, vec3(3.9f, 2.5f, 2.3f))};
+}
+
+vec3 color_of(const MetalOf& metal) {
+    return metal.name.empty() ? glm::clamp(metal_color(metal.eta, metal.k), vec3(0), vec3(1))
+                              : *metal_color(metal.name);
 }
 
 /// The rougher a metal, the less it mirrors and the more it looks like matte paint.
@@ -237,26 +256,30 @@ Material metal(const vec3& color, double width) {
 }
 
 Material make_metal(const MaterialContext& c) {
-    Material m = metal(metal_of(c), width_before_v4(c, roughness_of(c, 0.01)));
-    take_reflection(c, "reflectance", m);
-    return m;
-}
-
-/// of: what stands before the names of the metal's parameters.
-Material conductor(const MaterialContext& c, const std::string& of) {
-    Material m = metal(metal_of(c, of), width_of(c, roughness_of(c, 0, of)));
+    Material m = metal(color_of(metal_of(c)), width_before_v4(c, roughness_of(c, 0.01)));
     take_reflection(c, "reflectance", m);
     return m;
 }
 
 Material make_conductor(const MaterialContext& c) {
-    return conductor(c, {});
+    Material m = metal(color_of(metal_of(c)), width_of(c, roughness_of(c, 0)));
+    take_reflection(c, "reflectance", m);
+    return m;
 }
 
-/// The metal below a coat has names of its own.
+/// A smooth metal and its coat mirror together. The metal below a coat has names of its own.
 Material make_coated_conductor(const MaterialContext& c) {
-    c.diagnostics.approximate("coat of a metal", c.place, "the coats of metals are left out");
-    return conductor(c, "conductor.");
+    const MetalOf below = metal_of(c, "conductor.");
+    const double roughness = roughness_of(c, 0, "conductor.");
+    if (roughness > 0)
+        c.diagnostics.approximate("coat of a metal", c.place,
+                                  "the coats of rough metals are as rough as these");
+    const vec3 color = below.name.empty()
+                           ? coated_metal_color(below.eta, below.k, c.number("interface.eta", 1.5))
+                           : *coated_metal_color(below.name);
+    Material m = metal(glm::clamp(color, vec3(0), vec3(1)), width_of(c, roughness));
+    take_reflection(c, "reflectance", m);
+    return m;
 }
 
 Material make_shiny_metal(const MaterialContext& c) {
@@ -286,6 +309,7 @@ Material make_uber(const MaterialContext& c) {
         m.transmission = 1;
         m.filter = through;
         m.finish->conserve_energy = true;
+        m.optics->width = 0; // light goes straight through, whatever highlights there are
         if (mean(kt) == 0) { // light passes through holes, not through glass
             m.ior = 1;
             m.optics->boundary = Optics::Boundary::None;
@@ -301,14 +325,23 @@ void tell_translucent(const MaterialContext& c) {
                               "light that surfaces let through in all directions is left out");
 }
 
+/// Lets a matte surface scatter this light to its other side too.
+Material translucent(Material m, const vec3& behind) {
+    m.optics->diffuse_behind = glm::clamp(behind, vec3(0), vec3(1));
+    if (mean(m.color) > 0)
+        m.finish->diffuse_back = mean(behind) / mean(m.color);
+    return m;
+}
+
 Material make_translucent(const MaterialContext& c) {
-    tell_translucent(c);
-    return matte(c, "Kd", 0.25f, c.color("reflect", 0.5f));
+    return translucent(matte(c, "Kd", 0.25f, c.color("reflect", 0.5f)),
+                       c.color("Kd", 0.25f) * c.color("transmit", 0.5f));
 }
 
 Material make_diffuse_transmission(const MaterialContext& c) {
-    tell_translucent(c);
-    return matte(c, "reflectance", 0.25f, vec3(float(c.p.number("scale", 1))));
+    const vec3 scale(float(c.p.number("scale", 1)));
+    return translucent(matte(c, "reflectance", 0.25f, scale),
+                       scale * c.color("transmittance", 0.25f));
 }
 
 Material make_subsurface(const MaterialContext& c) {
@@ -319,9 +352,9 @@ Material make_subsurface(const MaterialContext& c) {
 /// In Disney's material, spectrans decides between glass and the rest, and the metallic share
 /// between metal and paint.
 Material make_disney(const MaterialContext& c) {
-    if (c.number("spectrans", 0) > 0.5)
-        return make_glass(c, c.p.flag("thin", false));
     const double roughness = roughness_of(c, 0.5), width = roughness * roughness;
+    if (c.number("spectrans", 0) > 0.5)
+        return make_glass(c, c.p.flag("thin", false), width);
     if (c.number("metallic", 0) > 0.5)
         return metal(c.color("color", 0.5f), width);
     Material m = matte(c, "color");
@@ -368,7 +401,7 @@ constexpr Family kFamilies[] = {{"matte", make_matte},
                                 {"mirror", make_mirror},
                                 {"glass", make_thick_glass},
                                 {"roughglass", make_thick_glass},
-                                {"dielectric", make_thick_glass},
+                                {"dielectric", make_dielectric},
                                 {"thindielectric", make_thin_glass},
                                 {"metal", make_metal},
                                 {"conductor", make_conductor},

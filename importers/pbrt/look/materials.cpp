@@ -17,8 +17,9 @@ bool is_invisible(const Material& m) {
     return !m.finish && m.transmission == 1 && m.mirror == 0 && m.ior == 1 && m.filter == vec3(1);
 }
 
-bool is_emitter(const Material& m) {
-    return m.finish && mean(m.finish->ambient) > kAmbient && m.finish->diffuse == 0;
+bool is_clear(const Material& m) {
+    return m.optics && m.optics->through != vec3(0) &&
+           m.optics->boundary == Optics::Boundary::Dielectric;
 }
 
 /// Equal materials have equal keys, and others hardly ever do.
@@ -31,6 +32,10 @@ static std::string key_of(const Material& m) {
 
 bool Materials::is_on_uv(const Material& material) const {
     const MaterialMaps maps = material.maps.value_or(MaterialMaps{});
+    if (material.mix &&
+        std::ranges::any_of(textures_.stops_of(material.mix->texture),
+                            [&](const TextureStop& stop) { return wants_uv_[stop.texture]; }))
+        return true;
     return (material.texture && textures_.is_on_uv(material.texture->texture)) ||
            (maps.reflection != kNone && textures_.is_on_uv(maps.reflection)) ||
            (material.normal_map && textures_.is_on_uv(material.normal_map->texture));
@@ -86,6 +91,13 @@ static bool is_one_boundary(const Optics& a, const Optics& b) {
            a.internal_reflection == b.internal_reflection;
 }
 
+/// Returns whether a mix of the two is no one surface: each has its own share of the hits.
+static bool are_beside(const Material& a, const Material& b) {
+    return a.optics && b.optics &&
+           (a.mix || b.mix ||
+            (has_boundary(a) && has_boundary(b) && !is_one_boundary(*a.optics, *b.optics)));
+}
+
 namespace {
 
 /// Two materials of which the second has the share `amount`.
@@ -126,6 +138,7 @@ static Grounds mix_optics(const Mixture& mix, Optics& m) {
     const Optics &a = *mix.a.optics, &b = *mix.b.optics;
     const bool is_one = is_one_boundary(a, b);
     m.through = mix.of(a.through, b.through);
+    m.diffuse_behind = mix.of(a.diffuse_behind, b.diffuse_behind);
     m.reflection = is_one ? mix.of(a.reflection, b.reflection)
                           : (mix.keeps_b ? mix.amount : vec3(1) - mix.amount) * m.reflection;
     m.internal_reflection = is_one && a.internal_reflection;
@@ -153,7 +166,16 @@ Materials::Mapped Materials::mix(const Parameters& parameters, const Place& plac
     const uint32_t mixes = 1 + mixes_[a] + mixes_[b];
     if (mixes > kMaxCombined)
         diagnostics_.fail(place, fmt::format("found a mix of more than {} others", kMaxCombined));
-    const Material material = mixed(all_[a], all_[b], parameters, place);
+    Material material = mixed(all_[a], all_[b], parameters);
+    if (are_beside(all_[a], all_[b])) {
+        if (textures_.is_pattern(parameters, "amount"))
+            diagnostics_.approximate("mix of boundaries", place,
+                                     "two materials that shine are mixed in the same proportion "
+                                     "everywhere");
+        const float amount = mean(amount_of(parameters));
+        material.mix = placed_in_world(
+            textures_.average({{double(1 - amount), {}, a}, {double(amount), {}, b}}));
+    }
     return {material, mixed_holes(holes_[a], holes_[b], parameters, place), mixes};
 }
 
@@ -167,17 +189,18 @@ uint32_t Materials::mixed_holes(uint32_t a, uint32_t b, const Parameters& parame
                              "where there is something");
     const auto opacity = [](uint32_t holes) { return TextureStop{0, {vec3(1)}, holes}; };
     const auto share = textures_.texture(parameters, "amount");
-    const TextureStop amount{
-        0, {textures_.color(parameters, "amount", vec3(0.5f))}, share.value_or(kNoTexture)};
+    const TextureStop amount{0, {amount_of(parameters)}, share.value_or(kNoTexture)};
     return textures_.mix(opacity(a), opacity(b), amount);
+}
+
+vec3 Materials::amount_of(const Parameters& parameters) const {
+    return glm::clamp(textures_.color(parameters, "amount", vec3(0.5f)), vec3(0), vec3(1));
 }
 
 /// Mixes part by part. What cannot be mixed is that of the only material that has a boundary, or
 /// else of the larger share.
-Material Materials::mixed(const Material& a, const Material& b, const Parameters& parameters,
-                          const Place& place) {
-    const vec3 amount =
-        glm::clamp(textures_.color(parameters, "amount", vec3(0.5f)), vec3(0), vec3(1));
+Material Materials::mixed(const Material& a, const Material& b, const Parameters& parameters) {
+    const vec3 amount = amount_of(parameters);
     const Mixture mixture{
         a, b, amount, has_boundary(a) != has_boundary(b) ? has_boundary(b) : mean(amount) >= 0.5f};
     Material m = mixture.keeps_b ? b : a;
@@ -188,9 +211,6 @@ Material Materials::mixed(const Material& a, const Material& b, const Parameters
         mix_finishes(mixture, m);
     if (!a.optics || !b.optics)
         return m;
-    if (has_boundary(a) && has_boundary(b) && !is_one_boundary(*a.optics, *b.optics))
-        diagnostics_.approximate("mix of boundaries", place,
-                                 "of a mix of two materials that shine, one alone shines");
     const Grounds grounds = mix_optics(mixture, *m.optics);
     const auto share = textures_.texture(parameters, "amount");
     if (!a.texture && !b.texture && !share)
@@ -227,7 +247,16 @@ uint32_t Materials::named(const std::string& name, const Place& place) {
     return 0;
 }
 
-uint32_t Materials::emitter(uint32_t surface, const vec3& radiance, bool two_sided,
+uint32_t Materials::filled(uint32_t glass, const vec3& absorbed) {
+    Material m = all_[glass];
+    const float strongest = max_component(absorbed);
+    assert(strongest > 0);
+    m.absorption = Absorption{1 / strongest, 1000, vec3(1) - absorbed / strongest};
+    return add({std::move(m), holes_[glass], mixes_[glass]});
+}
+
+/// A picture multiplies the emission of optics alone, which shows without a finish too.
+uint32_t Materials::emitter(uint32_t surface, const Emission& emission, const vec3& radiance,
                             const Place& place) {
     Material m;
     assert(surface < all_.size());
@@ -236,8 +265,13 @@ uint32_t Materials::emitter(uint32_t surface, const vec3& radiance, bool two_sid
                                  "textures of surfaces that emit light are shown by their mean");
     m.optics = all_[surface].optics.value_or(Optics{.diffuse = all_[surface].color});
     m.optics->emission = radiance;
-    m.optics->two_sided = two_sided;
+    m.optics->two_sided = emission.two_sided;
     m.name = "emitter";
+    if (emission.picture) {
+        m.color = vec3(0);
+        m.maps = MaterialMaps{.emission = *emission.picture};
+        return add({std::move(m)});
+    }
     m.color = vec3(1);
     m.finish = Finish{};
     m.finish->diffuse = 0;

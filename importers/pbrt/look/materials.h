@@ -4,6 +4,7 @@
 
 #include "core/scene.h"
 #include "importers/pbrt/interpret/scoped_names.h"
+#include "importers/pbrt/look/lights.h"
 #include "importers/pbrt/look/textures.h"
 
 #include <unordered_map>
@@ -27,7 +28,11 @@ public:
     /// Ends the scope for which begin_scope() returned `begin`.
     void end_scope(size_t begin) { named_.end(begin); }
     /// Returns the material `surface` with an emission of this radiance.
-    uint32_t emitter(uint32_t surface, const vec3& radiance, bool two_sided, const Place& place);
+    uint32_t emitter(uint32_t surface, const Emission& emission, const vec3& radiance,
+                     const Place& place);
+
+    /// Returns the material with an inside that absorbs so much light per length, some above 0.
+    uint32_t filled(uint32_t glass, const vec3& absorbed);
 
     const std::vector<Material>& all() const { return all_; }
     /// Returns the texture that says where the material has holes; kNoTexture: it has none.
@@ -46,8 +51,8 @@ private:
 
     Mapped mapped(const std::string& type, const Parameters& parameters, const Place& place);
     Mapped mix(const Parameters& parameters, const Place& place);
-    Material mixed(const Material& a, const Material& b, const Parameters& parameters,
-                   const Place& place);
+    vec3 amount_of(const Parameters& parameters) const;
+    Material mixed(const Material& a, const Material& b, const Parameters& parameters);
     uint32_t mixed_holes(uint32_t a, uint32_t b, const Parameters& parameters, const Place& place);
     uint32_t add(Mapped made);
     bool is_on_uv(const Material& material) const;
@@ -64,7 +69,7 @@ private:
 
 /// Returns whether nothing of the material is seen: it is only the border of a medium.
 bool is_invisible(const Material& material);
-/// Returns whether the material emits light.
-bool is_emitter(const Material& material);
+/// Returns whether the material is the surface of glass.
+bool is_clear(const Material& material);
 
 } // namespace ovc::pbrt

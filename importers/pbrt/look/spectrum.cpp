@@ -76,9 +76,10 @@ struct Illuminant {
     double x, y; // CIE 1931
 };
 
-// From CIE 15; ACES' white from SMPTE ST 2065-1.
+// From CIE 15, except D50, which is as pbrt-v4 shows its table of it; ACES' white from SMPTE ST
+// 2065-1.
 constexpr Illuminant kIlluminants[] = {
-    {"stdillum-A", 0.44758, 0.40745},   {"stdillum-D50", 0.34567, 0.35851},
+    {"stdillum-A", 0.44758, 0.40745},   {"stdillum-D50", 0.3371, 0.3584},
     {"stdillum-D65", 0.31272, 0.32903}, {"stdillum-F1", 0.31310, 0.33727},
     {"stdillum-F2", 0.37208, 0.37529},  {"stdillum-F3", 0.40910, 0.39430},
     {"stdillum-F4", 0.44018, 0.40329},  {"stdillum-F5", 0.31379, 0.34531},
@@ -89,16 +90,20 @@ constexpr Illuminant kIlluminants[] = {
 
 struct Metal {
     std::string_view symbol;
-    vec3 color;
+    vec3 color, coated;
 };
 
 // The colors are linear sRGB, seen head on in white light, as measured in pictures of pbrt-v4, of
 // gold as far as sRGB has them; chrome, which v4 does not name, is from Lagarde 2011, "Feeding a
-// Physically Based Shading Model".
-constexpr Metal kMetals[] = {{"Ag", {0.972f, 0.960f, 0.911f}},  {"Al", {0.913f, 0.922f, 0.920f}},
-                             {"Au", {1.000f, 0.782f, 0.342f}},  {"CuZn", {0.910f, 0.778f, 0.421f}},
-                             {"Cu", {0.956f, 0.638f, 0.536f}},  {"Cr", {0.550f, 0.556f, 0.554f}},
-                             {"MgO", {0.072f, 0.073f, 0.075f}}, {"TiO2", {0.232f, 0.245f, 0.271f}}};
+// Physically Based Shading Model"; coated, as if its eta were 1.
+constexpr Metal kMetals[] = {{"Ag", {0.972f, 0.960f, 0.911f}, {0.942f, 0.927f, 0.873f}},
+                             {"Al", {0.913f, 0.922f, 0.920f}, {0.859f, 0.871f, 0.872f}},
+                             {"Au", {1.000f, 0.782f, 0.342f}, {0.988f, 0.724f, 0.252f}},
+                             {"CuZn", {0.910f, 0.778f, 0.421f}, {0.856f, 0.709f, 0.344f}},
+                             {"Cu", {0.956f, 0.638f, 0.536f}, {0.916f, 0.547f, 0.441f}},
+                             {"Cr", {0.550f, 0.556f, 0.554f}, {0.472f, 0.478f, 0.476f}},
+                             {"MgO", {0.072f, 0.073f, 0.075f}, {0.044f, 0.045f, 0.045f}},
+                             {"TiO2", {0.232f, 0.245f, 0.271f}, {0.128f, 0.137f, 0.157f}}};
 
 struct Glass {
     std::string_view name;
@@ -154,6 +159,29 @@ vec3 black_body(double kelvin) {
     return without_negatives(rgb_of_xyz(xyz / xyz.y));
 }
 
+/// Returns CIE 15's daylight of that temperature, and below 4,000 K that of a black body, as XYZ.
+static dvec3 daylight_of(double kelvin) {
+    const double t = std::clamp(kelvin, 500.0, 25000.0);
+    if (t < 4000) {
+        const dvec3 xyz = integrate([&](double nm) { return planck(nm, t); });
+        return xyz / xyz.y;
+    }
+    const double per = 1 / t;
+    const double x = t <= 7000 ? ((-4.607e9 * per + 2.9678e6) * per + 99.11) * per + 0.244063
+                               : ((-2.0064e9 * per + 1.9018e6) * per + 247.48) * per + 0.23704;
+    const double y = (-3 * x + 2.87) * x - 0.275;
+    return {x / y, 1, (1 - x - y) / y};
+}
+
+/// Bradford's transform: responses of cones are divided by those to the white.
+vec3 white_balance(double kelvin) {
+    const dmat3 to_cones(dvec3(0.8951, -0.7502, 0.0389), dvec3(0.2664, 1.7135, -0.0685),
+                         dvec3(-0.1614, 0.0367, 1.0296));
+    const dvec3 white = to_cones * daylight_of(6504);
+    const dvec3 balanced = white * white / (to_cones * daylight_of(kelvin));
+    return without_negatives(rgb_of_xyz(glm::inverse(to_cones) * balanced));
+}
+
 vec3 color_of_samples(std::span<const double> pairs, bool is_v4) {
     assert(pairs.size() >= 2);
     const auto light_at = [&](double nm) { return is_v4 ? daylight(nm) : 1.0; };
@@ -203,16 +231,31 @@ std::optional<vec3> color_of(const Parameter& parameter, bool is_v4) {
     }
 }
 
-std::optional<vec3> metal_color(std::string_view name) {
+static std::optional<vec3> color_of_metal(std::string_view name, vec3 Metal::*color) {
     for (const Metal& metal : kMetals)
         if (names(name, metal.symbol))
-            return metal.color;
+            return metal.*color;
     return std::nullopt;
+}
+
+std::optional<vec3> metal_color(std::string_view name) {
+    return color_of_metal(name, &Metal::color);
+}
+
+std::optional<vec3> coated_metal_color(std::string_view name) {
+    return color_of_metal(name, &Metal::coated);
 }
 
 vec3 metal_color(const vec3& eta, const vec3& k) {
     const vec3 less = eta - vec3(1), more = eta + vec3(1);
     return (less * less + k * k) / (more * more + k * k);
+}
+
+/// Light goes up and down within the coat.
+vec3 coated_metal_color(const vec3& eta, const vec3& k, double coat) {
+    const float root = float((coat - 1) / (coat + 1)), mirrored = root * root;
+    const vec3 metal = metal_color(eta / float(coat), k / float(coat));
+    return vec3(mirrored) + (1 - mirrored) * (1 - mirrored) * metal / (vec3(1) - mirrored * metal);
 }
 
 std::optional<double> glass_ior(std::string_view name) {

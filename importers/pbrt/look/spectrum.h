@@ -19,6 +19,9 @@ std::optional<vec3> illuminant(const Parameter& parameter);
 /// Returns the color of a black body of luminance 1.
 vec3 black_body(double kelvin);
 
+/// Returns the color of white light on a film to which daylight of so many kelvins is white.
+vec3 white_balance(double kelvin);
+
 /// Returns the color of a spectrum of pairs (nm, value), at least one, which is linear in between,
 /// as seen in white light: 1 everywhere is white. Before v4 the light is the same at all
 /// wavelengths, and the spectrum constant beyond its ends; in v4 the light is D65, and it is 0
@@ -30,6 +33,10 @@ vec3 color_of_samples(std::span<const double> pairs, bool is_v4);
 std::optional<vec3> metal_color(std::string_view name);
 /// Returns the same from eta and k.
 vec3 metal_color(const vec3& eta, const vec3& k);
+/// Return the same below a smooth coat, with the light that this reflects: of index 1.5 for a metal
+/// by its name, else of index `coat`.
+std::optional<vec3> coated_metal_color(std::string_view name);
+vec3 coated_metal_color(const vec3& eta, const vec3& k, double coat);
 
 /// Returns the index of refraction of "glass-BK7" and its like; nothing if the name is not known.
 std::optional<double> glass_ior(std::string_view name);

@@ -62,6 +62,11 @@ public:
     uint32_t product(uint32_t texture, const vec3& color);
     /// Returns a texture of two, of which the second has a share.
     uint32_t mix(const TextureStop& low, const TextureStop& high, const TextureStop& share);
+    /// Returns a texture of stops that count in proportion to their `at`.
+    uint32_t average(std::vector<TextureStop> stops);
+    const std::vector<TextureStop>& stops_of(uint32_t texture) const {
+        return scene_.textures[texture].stops;
+    }
     /// Adds a picture as a texture of the scene. place: names it.
     uint32_t image(const std::string& file, const Place& place, ImageTexture image, bool on_uv);
     std::array<size_t, 2> begin_scope() const { return {by_name_[0].begin(), by_name_[1].begin()}; }
