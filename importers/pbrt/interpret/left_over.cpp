@@ -18,7 +18,7 @@ namespace {
 constexpr std::string_view kPassedOver =
     " S aamode coordinatesystem diagonal dirtyregions discarddegenerateUVs display faceIndices "
     "maxanisotropy maxcomponentvalue maxsampleluminance name nsamples "
-    "portal premultiplyalpha preview remaproughness samples savefp16 scheme shutterclose "
+    "premultiplyalpha preview remaproughness samples savefp16 scheme shutterclose "
     "shutteropen trilinear writefrequency ";
 
 /// Further parameters that pbrt has and that are not shown everywhere.

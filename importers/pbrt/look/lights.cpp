@@ -211,6 +211,9 @@ void Lights::add_distant(const Parameters& p, const dmat4& to_world, const Place
 
 /// A map is a layer before a sky of even colors, which Whitted's model takes ambient light from.
 void Lights::add_infinite(const Parameters& p, const dmat4& to_world, const Place& place) {
+    if (p.find("portal"))
+        diagnostics_.approximate("portal", place,
+                                 "skies shine from all around, not only through their portals");
     const bool has_map = picture_of(p) != nullptr;
     const vec3 radiance = factor_of(p, "illuminance", pi) * scaled(p, "L", vec3(1));
     const Background colors; // the default sky, of luminance about 1/2 to 1
