@@ -28,7 +28,7 @@ constexpr TypeName kTypes[] = {
     {"spectrum", Kind::Spectrum}, {"string", Kind::String},   {"texture", Kind::Texture}};
 
 /// The max number of values that a spectrum's file may have.
-constexpr size_t kMaxSamples = 100'000;
+constexpr size_t kMaxSpectrumValues = 100'000;
 
 /// Returns the pairs of wavelength and value that a file holds, with comments behind '#'; nothing
 /// if it holds anything else.
@@ -39,7 +39,7 @@ std::vector<double> samples_in(const std::filesystem::path& path, FilesRead* fil
         std::string_view rest = line->substr(0, line->find('#'));
         for (std::string_view word = next_word(rest); !word.empty(); word = next_word(rest)) {
             const auto number = parse_double(word);
-            if (!number || !std::isfinite(*number) || samples.size() >= kMaxSamples)
+            if (!number || !std::isfinite(*number) || samples.size() >= kMaxSpectrumValues)
                 return {};
             samples.push_back(*number);
         }
