@@ -11,6 +11,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -47,6 +48,27 @@ std::string name_of(std::span<const unsigned char> bytes) {
                });
     };
     return begins("\x89PNG") ? "picture.png" : begins("\xff\xd8") ? "picture.jpg" : "picture.exr";
+}
+
+/// Returns what keeps a picture of this kind from being read, or nothing. A damaged header may
+/// claim any size. OpenImageIO ends the process where an int cannot count the tiles.
+std::string refusal(const OIIO::ImageSpec& spec) {
+    constexpr int64_t kMaxTiles = int64_t(1) << 30;
+    constexpr int64_t kMaxValues = int64_t(1) << 28; // of the rows that are held at once
+    if (spec.nchannels < 1 || spec.width < 1 || spec.height < 1 || spec.depth > 1 || spec.deep)
+        return "it has no pixels";
+    const int64_t width = spec.width, height = spec.height;
+    const int64_t rows = std::min<int64_t>(height, std::max(spec.tile_height, Pyramid::kTile));
+    const auto tiles = [&](int64_t across, int64_t down) {
+        return (width / across + 1) * (height / down + 1);
+    };
+    if (tiles(Pyramid::kTile, Pyramid::kTile) > kMaxTiles ||
+        (spec.tile_width > 0 &&
+         tiles(spec.tile_width, std::max(1, spec.tile_height)) > kMaxTiles) ||
+        width * rows > kMaxValues / spec.nchannels)
+        return "found " + std::to_string(width) + " x " + std::to_string(height) +
+               " pixels, which are too many";
+    return {};
 }
 
 class LinearInput final : public OIIO::ImageInput {
@@ -111,6 +133,8 @@ bool LinearInput::open(const std::string& name, OIIO::ImageSpec& spec) {
     if (!input_)
         return fail(OIIO::geterror());
     finest_ = input_->spec();
+    if (const std::string why = refusal(finest_); !why.empty())
+        return fail(why);
     has_mipmaps_ = finest_.tile_width > 0 && input_->seek_subimage(0, 1);
     if (!seek_subimage(0, 0))
         return false;

@@ -112,8 +112,6 @@ OIIO::ImageSpec spec_of(ovc_textures textures, const OpenPicture& picture) {
     OIIO::ImageSpec spec;
     if (!textures->cache->get_imagespec(name, spec))
         throw std::runtime_error(error_of(*textures->cache, picture.name));
-    if (spec.nchannels < 1 || spec.width < 1 || spec.height < 1 || spec.deep)
-        throw std::runtime_error("it has no pixels");
     return spec;
 }
 
@@ -121,6 +119,9 @@ int open(ovc_textures textures, ovc_picture* picture, uint32_t* number) {
     return guarded([&] {
         if (!picture->bytes && !std::filesystem::exists(picture->file))
             throw std::runtime_error("there is no such file");
+        // A pipe or a device may never end.
+        if (!picture->bytes && !std::filesystem::is_regular_file(picture->file))
+            throw std::runtime_error("it is no regular file");
         const auto* bytes = static_cast<const unsigned char*>(picture->bytes);
         OpenPicture opened{
             ovc::name_picture(

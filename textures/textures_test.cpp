@@ -238,6 +238,44 @@ TEST(Textures, SaysWhyAPictureCannotBeRead) {
     EXPECT_EQ(cache.open(whole.path), ~0u);
 }
 
+/// Damaged headers may claim any size. What is no regular file may have no end.
+TEST(Textures, RefusesPicturesOfImpossibleSizesAndFilesWithoutEnd) {
+    const Cache cache;
+    const fs::path path =
+        fs::temp_directory_path() / ("overcast-" + std::to_string(getpid()) + "huge.");
+    const struct {
+        const char* extension;
+        const char* contents;
+        const char* sentence;
+    } cases[] = {
+        {"pfm", "PF\n2000000000 2000000000\n-1.0\n", "which are too many"},
+        {"pfm", "PF\n1 2000000000\n-1.0\n", ""},
+        {"pfm", "PF\n2000000000 1\n-1.0\n", "found 2000000000 x 1 pixels, which are too many"},
+        {"pfm", "PF\n-2 -2\n-1.0\n", "it has no pixels"},
+        {"ppm", "P6\n2000000000 2000000000\n255\n", "which are too many"},
+        {"hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2000000000 +X 2000000000\n",
+         "which are too many"}};
+    for (const auto& c : cases) {
+        const std::string file = path.string() + c.extension;
+        std::ofstream(file) << c.contents;
+        const uint32_t number = cache.open(file);
+        if (*c.sentence) {
+            EXPECT_EQ(number, ~0u) << c.contents;
+            EXPECT_NE(std::string(api().last_error()).find(c.sentence), std::string::npos)
+                << api().last_error();
+        } else if (number != ~0u) {
+            const ovc_texture_area area = point_at(0.5f, 0.5f);
+            float rgba[4];
+            EXPECT_FALSE(api().sample(cache.handle(), number, &area, rgba)) << c.contents;
+        }
+        fs::remove(file);
+    }
+    for (const char* endless : {"/dev/zero", "/tmp"}) {
+        EXPECT_EQ(cache.open(endless), ~0u);
+        EXPECT_STREQ(api().last_error(), "it is no regular file");
+    }
+}
+
 TEST(Textures, APictureThatBreaksOffFailsWhereItIsMissing) {
     const TestPicture picture("half.png", 64, 64, 3, OIIO::TypeUInt8, noise(64 * 64 * 3));
     fs::resize_file(picture.path, fs::file_size(picture.path) / 2);
