@@ -147,7 +147,7 @@ bool LinearInput::seek_subimage(int subimage, int miplevel) {
     if (!input_ || subimage != 0 || miplevel < 0)
         return false;
     if (has_mipmaps_) {
-        if (!input_->seek_subimage(0, miplevel))
+        if (!input_->seek_subimage(0, miplevel) || !refusal(input_->spec()).empty())
             return false;
         take_format(input_->spec());
     } else {
