@@ -17,7 +17,8 @@ struct LineAllocator {
     template <class Other>
     LineAllocator(const LineAllocator<Other>&) {}
     T* allocate(size_t count) { return static_cast<T*>(::operator new(count * sizeof(T), kLine)); }
-    void deallocate(T* all, size_t count) { ::operator delete(all, count * sizeof(T), kLine); }
+    /// Clang before version 19 has no operator delete that takes a size, unless it is asked to.
+    void deallocate(T* all, size_t) { ::operator delete(all, kLine); }
     bool operator==(const LineAllocator&) const = default;
 };
 
