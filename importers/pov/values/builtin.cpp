@@ -283,7 +283,7 @@ const std::unordered_map<std::string_view, Builtin> kBuiltins = {
     {"file_exists",
      [](Reader& r, const Token& t) {
          return of_text(r, t, [&r](const std::string& s) {
-             return Number::of(r.find_file(s, "").empty() ? 0.0 : 1.0);
+             return Number::of(r.written(s) || !r.find_file(s, "").empty() ? 1.0 : 0.0);
          });
      }},
     {"min_extent", parse_extent},

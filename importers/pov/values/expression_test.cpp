@@ -43,6 +43,7 @@ TEST(PovExpression, KnowsTheFunctions) {
     EXPECT_VALUE(2.5, "val(substr(\"x2.5y\", 2, 3))");
     EXPECT_VALUE(2001, "val(datetime(366.5, \"%Y\"))");
     EXPECT_VALUE(12, "val(substr(datetime(366.5), 12, 2))");
+    EXPECT_VALUE(20, "strlen(D)", "#declare D = datetime(366.5);");
     EXPECT_VALUE(
         2014,
         "val(\"1e3x\") + val(\" +12 \") + val(\"1e\") + val(\"1,5\") + val(\"1e3\") + val(\"x1\")");

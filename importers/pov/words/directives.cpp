@@ -145,26 +145,50 @@ void Reader::do_include() {
         fail(at, fmt::format("found macros and includes more than {} deep in each other: {} does "
                              "not end",
                              limits.nesting, ovc::quoted(*name)));
-    const std::filesystem::path path = find_file(*name, ".inc");
+    const SourceFile* file = included(*name, at);
+    const uint32_t scope = push_scope();
+    frames_.push_back({file, 0, file->tokens.size() - 1, false, scope, {}, at});
+}
+
+/// Returns the file of this name that the scene has written, or else one on the disk.
+const SourceFile* Reader::included(const std::string& name, const Place& at) {
+    if (const std::string* text = written(name)) {
+        SourceFile*& file = by_path_[name];
+        if (!file || file->text != *text) { // a macro may still run in what was written before
+            spend(text->size() / 16);
+            grow(text->size() * (1 + sizeof(Token) / 2));
+            file = &add_file(name, folder_, *text);
+        }
+        return file;
+    }
+    const std::filesystem::path path = find_file(name, ".inc");
     if (path.empty())
         fail(at, fmt::format("there is no file {}, neither beside the scene nor among POV-Ray's "
                              "include files",
-                             ovc::quoted(*name)));
+                             ovc::quoted(name)));
     SourceFile*& file = by_path_[path.string()];
     if (!file) {
         Result<std::string> text = read_text(path, files_read_);
         if (!text)
             fail(at, text.error().message);
-        files_.push_back(std::make_unique<SourceFile>());
-        SourceFile& made = *files_.back();
-        made.name = path.string();
-        made.folder = path.parent_path().string();
-        made.text = std::move(*text);
-        tokenize(made, names_);
-        file = &made;
+        file = &add_file(path.string(), path.parent_path().string(), std::move(*text));
     }
-    const uint32_t scope = push_scope();
-    frames_.push_back({file, 0, file->tokens.size() - 1, false, scope, {}, at});
+    return file;
+}
+
+SourceFile& Reader::add_file(std::string name, std::string folder, std::string text) {
+    files_.push_back(std::make_unique<SourceFile>());
+    SourceFile& file = *files_.back();
+    file.name = std::move(name);
+    file.folder = std::move(folder);
+    file.text = std::move(text);
+    tokenize(file, names_);
+    return file;
+}
+
+const std::string* Reader::written(const std::string& name) const {
+    const auto at = written_.find(name);
+    return at == written_.end() ? nullptr : &at->second;
 }
 
 std::filesystem::path Reader::find_file(const std::string& name, std::string_view extension) const {

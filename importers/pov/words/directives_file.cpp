@@ -46,8 +46,8 @@ void Reader::do_fopen() {
             file.text = written_[file.name];
     } else if (!take("read"))
         fail_here("read, write or append");
-    else if (const auto written = written_.find(file.name); written != written_.end())
-        file.text = written->second;
+    else if (const std::string* const text_written = written(file.name))
+        file.text = *text_written;
     else if (const std::filesystem::path path = find_file(file.name, ""); path.empty())
         fail(at, fmt::format("there is no file {}", ovc::quoted(file.name)));
     else if (Result<std::string> whole = read_text(path, files_read_); !whole)

@@ -90,6 +90,23 @@ TEST(PovDirectives, FilesAreReadAndWhatIsWrittenIsReadAgain) {
     EXPECT_FALSE(std::filesystem::exists("new.txt"));
 }
 
+/// As Parse_String of strings.inc does, which writes one file again and again.
+TEST(PovDirectives, WhatIsWrittenIsIncluded) {
+    const std::string run = "#macro Run(S) #fopen F \"run.tmp\" write #write (F, S) #fclose F\n"
+                            "#include \"run.tmp\"\n#end\n";
+    EXPECT_VALUE(7, "A + B", run + "Run(\"#declare A = 3;\") Run(\"#declare B = 4;\")");
+    EXPECT_VALUE(8, "Twice(4)",
+                 run + "Run(\"#macro Twice(X) (2 * X) #end\") Run(\"#declare Twice2 = 1;\")");
+    EXPECT_VALUE(2, "file_exists(\"run.tmp\") + 1", run + "Run(\"\")");
+    const Result<Scene> endless = parsed_scene(run + R"(Run("#include \"run.tmp\""))");
+    ASSERT_FALSE(endless);
+    EXPECT_NE(endless.error().message.find("'run.tmp' does not end"), std::string::npos)
+        << endless.error().message;
+    const Result<Scene> wrong = parsed_scene(run + "Run(\"sphere { 0, }\")");
+    ASSERT_FALSE(wrong);
+    EXPECT_TRUE(wrong.error().message.starts_with("run.tmp:1:13: ")) << wrong.error().message;
+}
+
 TEST(PovDirectives, DeclarationsNeedNoSemicolon) {
     EXPECT_VALUE(5, "B", "#declare A = 5\n#declare B = A\n");
     EXPECT_VALUE(5, "B", "#\n#declare A = 5 #; #\n # declare B = A # \n");

@@ -138,6 +138,8 @@ public:
 
     /// Finds a file as files.h says: beside the scene, beside the including files, among POV-Ray's.
     std::filesystem::path find_file(const std::string& name, std::string_view extension) const;
+    /// Returns the text of a file that the scene has written and closed, or null.
+    const std::string* written(const std::string& name) const;
     Names& names() { return names_; }
     const Place& place() const { return last_; } // of the token read last
     Caller caller() const;                       // of the code that is running
@@ -226,6 +228,8 @@ private:
     void do_declare(bool local);
     void do_undef();
     void do_include();
+    const SourceFile* included(const std::string& name, const Place& at);
+    SourceFile& add_file(std::string name, std::string folder, std::string text);
     void do_if(bool condition, const Place& at);
     void do_else(const Token& at);
     void do_end(const Token& at);
