@@ -7,6 +7,8 @@
 #include "importers/test_files.h"
 #include "tests/file_size_limit.h"
 
+#include <gmock/gmock.h>
+
 #include <sys/stat.h>
 
 #include <bit>
@@ -44,6 +46,16 @@ TEST(Importer, TheExtensionChoosesTheReader) {
     for (const auto& test : cases)
         EXPECT_EQ(triangles_of(load(folder.write(test.name, test.contents))), kOne) << test.name;
 }
+
+#ifndef __SANITIZE_ADDRESS__ // which maps far more memory than there is
+TEST(Importer, SaysThatAModelIsLargerThanTheMemory) {
+    const TestFolder folder;
+    folder.write("claims.off", "OFF\n1000000000 1 0\n0 0 0\n");
+    EXPECT_THAT(folder.failure("claims.off"),
+                testing::HasSubstr("claims.off: found a model that takes more memory than is free, "
+                                   "or than its files can hold"));
+}
+#endif
 
 TEST(Importer, ErrorsNameTheFileAndWhatWasExpected) {
     const TestFolder folder;

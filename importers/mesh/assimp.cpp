@@ -231,13 +231,19 @@ void drop_deleted_pictures(const Assimp::Importer& importer, const aiScene* foun
     scene->mNumTextures = 0;
 }
 
-/// Assimp catches what it throws; other exceptions it describes in words.
-void rethrow_bad_alloc(const std::exception_ptr& thrown) {
+/// Throws std::bad_alloc where Assimp ran out of memory, of which it tells the exception's name
+/// alone.
+void check_memory(const Assimp::Importer& importer) {
+    const std::exception_ptr thrown = importer.GetException();
+    if (!thrown)
+        return;
     try {
         std::rethrow_exception(thrown);
     } catch (const std::bad_alloc&) {
         throw;
-    } catch (...) {
+    } catch (const std::length_error&) {
+        throw std::bad_alloc();
+    } catch (...) { // Assimp has a sentence on it
     }
 }
 
@@ -265,8 +271,7 @@ Result<Scene> read_assimp(const std::filesystem::path& path, const ImportOptions
     } else {
         found = read(importer, *source, path);
     }
-    if (const std::exception_ptr& thrown = importer.GetException())
-        rethrow_bad_alloc(thrown);
+    check_memory(importer);
     drop_deleted_pictures(importer, found);
     Scene scene;
     scene.name = path.stem().string();
@@ -300,7 +305,7 @@ Result<Scene> read_assimp(const std::filesystem::path& path, const ImportOptions
         say(options.log, LogLevel::Warning, source->error("it has no triangles").message);
     return scene;
 } catch (const std::bad_alloc&) {
-    throw; // a file may claim more than there is memory
+    throw; // a file may claim more than there is
 } catch (const std::exception& e) {
     return Error{fmt::format("{}: Assimp failed: {}", path.string(), e.what())};
 }

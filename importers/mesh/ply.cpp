@@ -100,10 +100,9 @@ public:
           with_uv_(options.texture_coordinates),
           streaming_(options.streaming),
           vertices_(stored<V>(options.streaming, 2)),
-          normals_(stored<vec3>(options.streaming, 4)) {
-        if (const PlyElement* vertices = header.find("vertex"))
-            vertex_count_ = vertices->count;
-    }
+          normals_(stored<vec3>(options.streaming, 4)),
+          vertex_element_(header.find("vertex")),
+          vertex_count_(vertex_element_ ? vertex_element_->count : 0) {}
 
     bool read() {
         if (streaming_)
@@ -157,7 +156,7 @@ private:
     }
 
     bool read_element(const PlyElement& element) {
-        if (&element == header_.find("vertex"))
+        if (&element == vertex_element_)
             return read_vertices(element);
         if (element.name == "face")
             return read_polygons(element, /* strips= */ false);
@@ -382,14 +381,15 @@ private:
     Source& source_;
     const PlyHeader& header_;
     Rows rows_;
-    uint64_t vertex_count_ = 0;
     std::vector<vec2> uv_; // one per vertex, or empty
     const bool with_uv_;   // they are wanted
     const Streaming* const streaming_;
     SpillingArray<V> vertices_;
-    SpillingArray<vec3> normals_; // one per vertex, or empty
-    bool is_wanted_ = true;       // by its sink
-    uint64_t passed_on_ = 0;      // corners that it has got
+    SpillingArray<vec3> normals_;            // one per vertex, or empty
+    const PlyElement* const vertex_element_; // null: none
+    const uint64_t vertex_count_;
+    bool is_wanted_ = true;  // by its sink
+    uint64_t passed_on_ = 0; // corners that it has got
     bool vertices_ready_ = false;
     bool lost_normals_ = false;
     uint64_t too_short_ = 0; // polygons with fewer than three corners
