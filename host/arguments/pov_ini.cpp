@@ -2,13 +2,13 @@
 #include "host/arguments/pov_ini.h"
 
 #include "core/text/lower_case.h"
+#include "importers/file/source.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cassert>
 #include <cctype>
-#include <fstream>
 
 namespace ovc {
 
@@ -86,27 +86,28 @@ Result<std::vector<IniItem>> read_ini(const std::string& word) {
     const std::string wanted = bracket < word.size()
                                    ? lower_case(word.substr(bracket + 1, word.size() - bracket - 2))
                                    : "";
-    std::ifstream file(path);
+    Result<Source> file = Source::open(path, nullptr, Source::Empty::Fine);
     if (!file)
-        return Error{fmt::format("{}: cannot be opened", path)};
+        return file.error();
     std::vector<IniItem> items;
     bool counts = true;
-    std::string line;
-    for (int number = 1; std::getline(file, line); ++number) {
-        const std::string_view text = trimmed(without_comment(line));
+    while (const std::optional<std::string_view> line = file->line()) {
+        const std::string_view text = trimmed(without_comment(*line));
         if (text.starts_with('[') && text.ends_with(']')) {
             counts = lower_case(trimmed(text.substr(1, text.size() - 2))) == wanted;
             continue;
         }
         if (!counts || text.empty())
             continue;
-        const std::string place = fmt::format("{}:{}: ", path, number);
+        const std::string place = fmt::format("{}:{}: ", path, file->line_number());
         if (const std::optional<IniItem> setting = as_setting(text))
             items.push_back({setting->key, setting->value, place});
         else
             for (const std::string& each : words_of(text))
                 items.push_back({"", each, place});
     }
+    if (file->is_damaged())
+        return file->error("");
     return items;
 }
 

@@ -34,6 +34,13 @@ TEST(PovIni, SettingsAreWords) {
                             "--antialias=0.1", "--antialias-method=2", "--jitter=0"));
 }
 
+TEST(PovIni, FilesOfOtherSystemsAreRead) {
+    const TestFolder folder;
+    const std::string ini =
+        folder.write("a.ini", "\xef\xbb\xbfInput_File_Name=a.pov\r\nWork_Threads=2\r\n").string();
+    EXPECT_THAT(translated_settings({ini}), ElementsAre("a.pov", "--threads=2"));
+}
+
 TEST(PovIni, SettingsMayStandOnTheCommandLine) {
     EXPECT_THAT(translated_settings({"Width=8", "Height=6", "a.pov", "seed=3"}),
                 ElementsAre("a.pov", "seed=3", "--size=8x6"));
@@ -50,7 +57,13 @@ TEST(PovIni, WhatIsWrongIsNamedWithItsLine) {
     folder.write("b.ini", self + "\n");
     EXPECT_THAT(translated_settings({self}).at(0), HasSubstr("name each other without an end"));
     EXPECT_THAT(translated_settings({(folder / "none.ini").string()}).at(0),
-                HasSubstr("none.ini: cannot be opened"));
+                HasSubstr("none.ini: no such file"));
+    std::filesystem::create_directory(folder / "folder.ini");
+    EXPECT_THAT(translated_settings({(folder / "folder.ini").string()}).at(0),
+                HasSubstr("folder.ini: found a directory"));
+    std::filesystem::create_symlink("/dev/zero", folder / "zero.ini");
+    EXPECT_THAT(translated_settings({(folder / "zero.ini").string()}).at(0),
+                HasSubstr("zero.ini: found a device"));
 }
 
 } // namespace

@@ -104,6 +104,12 @@ TEST_F(CameraPathFile, WrongOnesAreAnsweredWithOneSentence) {
     EXPECT_THAT(load_camera_path(testing::TempDir()).error().message, HasSubstr("directory"));
 }
 
+TEST_F(CameraPathFile, PassesOverTheMarkOfAByteOrder) {
+    const std::string mark = "\xef\xbb\xbf";
+    EXPECT_EQ(error(mark + "ex,ey,ez,tx,ty,tz\n1,2,3,4,5,6\n"), "");
+    EXPECT_EQ(error(mark + "[{\"eye\":[1,2,3],\"target\":[0,0,0]}]"), "");
+}
+
 /// A file that is cut or changed gives a path of usable cameras or a sentence, never anything else.
 TEST_F(CameraPathFile, SurvivesWhatChanceMakesOfIt) {
     const std::string texts[] = {

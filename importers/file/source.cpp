@@ -69,6 +69,10 @@ Result<Source> Source::open(const std::filesystem::path& path, FilesRead* files,
     if (!ec)
         source.likely_bytes_ = source.is_compressed_ ? size * kLikelyCompression : size;
     source.find_line_end();
+    constexpr std::string_view kUtf8Mark = "\xef\xbb\xbf"; // some editors put it before UTF-8
+    if (source.fill(kUtf8Mark.size()) &&
+        std::memcmp(source.buffer_.data(), kUtf8Mark.data(), kUtf8Mark.size()) == 0)
+        source.begin_ = kUtf8Mark.size();
     return source;
 }
 

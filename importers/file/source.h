@@ -25,7 +25,8 @@ public:
     enum class Empty { Refused, Fine };
 
     /// Fails on no such file, no regular file (links are followed), no permission, and an empty
-    /// file unless that is fine. `files` receives the file; it may be null.
+    /// file unless that is fine. A mark of the byte order of UTF-8 is passed over. `files` receives
+    /// the file; it may be null.
     static Result<Source> open(const std::filesystem::path& path, FilesRead* files = nullptr,
                                Empty empty = Empty::Refused);
 

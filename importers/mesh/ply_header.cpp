@@ -60,10 +60,8 @@ public:
     explicit HeaderReader(Source& source) : source_(source) {}
 
     Result<PlyHeader> read() {
-        std::string_view first = source_.line().value_or("");
-        if (first.starts_with("\xef\xbb\xbf")) // some editors put this mark before UTF-8
-            first.remove_prefix(3);
-        if (first = trimmed(first); first != "ply")
+        const std::string_view first = trimmed(source_.line().value_or(""));
+        if (first != "ply")
             return wrong(found(first), "ply");
         bool format_seen = false;
         while (const auto line = source_.line()) {

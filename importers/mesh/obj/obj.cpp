@@ -180,8 +180,6 @@ std::string_view ObjReader::joined(std::string_view line) {
 }
 
 bool ObjReader::read_line(std::string_view line) {
-    if (line.starts_with("\xef\xbb\xbf")) // some editors put this mark before UTF-8
-        line.remove_prefix(3);
     const std::string_view keyword = next_word(line);
     if (keyword == "v")
         return read_vertex(line);

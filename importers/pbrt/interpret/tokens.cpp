@@ -100,8 +100,6 @@ bool Tokens::next_line() {
         return true;
     }
     file.rest = *line;
-    if (file.source.line_number() == 1 && file.rest.starts_with("\xef\xbb\xbf"))
-        file.rest.remove_prefix(3); // some editors put this mark before UTF-8
     return true;
 }
 
