@@ -3,6 +3,8 @@
 #include "tests/fuzz/importers.h"
 
 #include "core/file/test_archive.h"
+#include "importers/pov/pictures/density.h"
+#include "importers/pov/pictures/picture.h"
 #include "importers/readers.h"
 #include "importers/scene_file/scene_file.h"
 #include "importers/scene_file/sound_meshes.h"
@@ -118,6 +120,19 @@ void fuzz_obj(const uint8_t* data, size_t size) {
     check(scene);
     check_size(scene, data, size);
     check_stream(scene, path, read_obj);
+}
+
+/// The first bytes tell the format of a picture.
+void fuzz_pictures(const uint8_t* data, size_t size) {
+    static const MemoryFile file("fuzz.png");
+    const std::string path = file.holding(data, size);
+    const Result<Picture> picture = pov::read_picture(path);
+    require(picture || !picture.error().message.empty());
+    if (picture)
+        require(picture->pixels.size() == picture->size() &&
+                (picture->indices.empty() || picture->indices.size() == picture->size()));
+    const Result<DensityGrid> grid = pov::read_density(path);
+    require(grid || !grid.error().message.empty());
 }
 
 /// Adds patterns and pictures to the scene's materials and to its sky.

@@ -13,6 +13,8 @@ namespace ovc {
 /// nor one sentence about it.
 void fuzz_ply(const uint8_t* data, size_t size);
 void fuzz_obj(const uint8_t* data, size_t size);
+/// A picture of POV-Ray, and a file of densities.
+void fuzz_pictures(const uint8_t* data, size_t size);
 /// Here the bytes say how a scene file is damaged (core/file/test_archive.h); an odd first byte
 /// makes the checksums right again.
 void fuzz_ovc(const uint8_t* data, size_t size);

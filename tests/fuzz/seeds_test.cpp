@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The fuzzers' seeds of PLY and OBJ, whole and damaged: what the fuzzers do for longer.
+// The fuzzers' seeds of PLY, OBJ and pictures, whole and damaged: what the fuzzers do for longer.
+#include "importers/pov/pictures/picture.h"
 #include "importers/test_files.h"
 #include "tests/fuzz/importers.h"
 
@@ -15,7 +16,11 @@ void survive(const std::string& kind, void (*fuzz)(const uint8_t*, size_t), size
     for (const auto& entry : fs::directory_iterator(OVC_SOURCE_DIR "/tests/fuzz/" + kind)) {
         SCOPED_TRACE(entry.path());
         ++seeds;
-        EXPECT_FALSE(triangles_of(load(entry.path())).empty());
+        if (kind == "pictures") {
+            EXPECT_TRUE(pov::read_picture(entry.path()));
+        } else {
+            EXPECT_FALSE(triangles_of(load(entry.path())).empty());
+        }
         std::ifstream file(entry.path(), std::ios::binary);
         const std::string whole{std::istreambuf_iterator<char>(file), {}};
         const auto run = [&](const std::string& bytes) {
@@ -41,6 +46,10 @@ TEST(FuzzSeeds, DamagedPlyFilesAreScenesOrErrors) {
 
 TEST(FuzzSeeds, DamagedObjFilesAreScenesOrErrors) {
     survive("obj", fuzz_obj, 3);
+}
+
+TEST(FuzzSeeds, DamagedPicturesArePicturesOrErrors) {
+    survive("pictures", fuzz_pictures, 7);
 }
 
 } // namespace
