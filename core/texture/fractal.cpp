@@ -55,8 +55,9 @@ Orbit orbit(const std::array<double, 10>& p, const dvec3& at) {
     const bool is_julia = p[P::kIsJulia] != 0;
     const int exponent = int(p[P::kExponent]);
     const Complex c = is_julia ? Complex(p[P::kX], p[P::kY]) : here;
-    Complex z = exponent < 0 && !is_julia ? Complex(0) : here;
-    double nearest = square(z);
+    const bool from_origin = exponent < 0 && !is_julia; // which then is no point of the orbit
+    Complex z = from_origin ? Complex(0) : here;
+    double nearest = from_origin ? double(INFINITY) : square(z);
     const int max = int(std::clamp(p[P::kIterations], 1.0, kMaxFractalIterations));
     for (int i = 0; i < max; ++i) {
         z = exponent < 0 ? magnet(-exponent, z, c) : power(z, exponent) + c;

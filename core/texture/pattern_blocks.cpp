@@ -47,7 +47,7 @@ double hexagon(const dvec3& at) {
     const double middle = std::floor(at.x / 1.5);
     for (int i = 0; i < 2; ++i) {
         const double column = middle + i;
-        const double row = std::round(at.z / height - 0.5 * column);
+        const double row = std::floor(at.z / height - 0.5 * column + 0.5);
         const double dx = at.x - 1.5 * column, dz = at.z - height * (row + 0.5 * column);
         if (const double away = dx * dx + dz * dz; away < nearest) {
             nearest = away;

@@ -135,6 +135,9 @@ const AskedValues kAsked[] = {
     {"magnet 1 mandel 30",
      Pattern{.kind = Kind::Fractal, .parameters = {30, -1, 0, 0, 0, 1, 1, 0, 1}},
      {1, 0.1, 1, 1}},
+    {"magnet 1 mandel 30 interior 1, 2",
+     Pattern{.kind = Kind::Fractal, .parameters = {30, -1, 0, 0, 0, 1, 1, 1, 2}},
+     {0.579881657, 0.1, 0.311595921, 0.576800542}},
     {"magnet 2 julia <0.3, 0.2>, 30 interior 6, 1",
      Pattern{.kind = Kind::Fractal, .parameters = {30, -2, 1, 0.3, 0.2, 1, 1, 6, 1}},
      {0.223675771, 0.223675771, 0.223675771, 0.223675771}},
@@ -169,6 +172,14 @@ TEST(Pattern, HasTheValuesThatPovrayPrints) {
         for (size_t i = 0; i < 4; ++i)
             EXPECT_NEAR(evaluate({}, asked.pattern, kPoints[i]).value, asked.values[i], 3e-5)
                 << asked.name << " at point " << i;
+}
+
+/// povray 3.7.0.10 prints these values.
+TEST(Pattern, HexagonsThatMeetAtAnAxisBeginThere) {
+    for (const double x : {-1.6, 1.4}) {
+        EXPECT_EQ(evaluate({}, Pattern{.kind = Kind::Hexagon}, dvec3(x, 0, 0)).value, 2) << x;
+        EXPECT_EQ(evaluate({}, Pattern{.kind = Kind::Hexagon}, dvec3(x, 0, -1e-9)).value, 1) << x;
+    }
 }
 
 TEST(Pattern, StepsComeBeforeTurbulence) {
