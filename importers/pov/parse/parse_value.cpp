@@ -144,6 +144,10 @@ const Value& counted(Reader& reader, const Value& value) {
     return value;
 }
 
+bool can_be_called(const Value& value) {
+    return std::holds_alternative<Function>(value) || std::holds_alternative<Spline>(value);
+}
+
 /// Returns whether the value is part of an expression: an array of numbers, of which an item's
 /// indices come next, or a function whose arguments do.
 bool begins_number(Reader& reader, const ValueHandle& handle) {
@@ -155,8 +159,7 @@ bool begins_number(Reader& reader, const ValueHandle& handle) {
         const Value* item = first_item(*array);
         return indices && item && std::holds_alternative<Number>(*item);
     }
-    return arguments &&
-           (std::holds_alternative<Function>(*value) || std::holds_alternative<Spline>(*value));
+    return arguments && can_be_called(*value);
 }
 
 /// Takes a variable or an array's item and returns its value. Takes nothing where the value may be
@@ -178,11 +181,20 @@ std::optional<Value> take_whole(Reader& reader) {
     if (reader.peek_more().is('[') && reader.value_of(handle) &&
         std::holds_alternative<Array>(handle.slot->value))
         handle = parse_item(reader, *handle.slot);
+    const bool arguments = reader.peek_more().is('(');
     const Value* value = reader.value_of(handle);
     if (!value)
         reader.fail(token.place, fmt::format("found {}, whose index or argument changes it",
                                              ovc::quoted(token.name->text)));
-    return counted(reader, *value);
+    const Value& whole = counted(reader, *value);
+    if (!arguments || !can_be_called(whole))
+        return whole;
+    // An array's function begins an expression. Its indices are read, so it gets a name for that.
+    Token item = token;
+    item.name = reader.names().intern(token.name->text + "[]");
+    reader.declare(item.name, /* local= */ true).value = Value(whole);
+    reader.put_back(item);
+    return std::nullopt;
 }
 
 } // namespace

@@ -14,6 +14,7 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace ovc::pov {
 
@@ -287,12 +288,15 @@ Number parse_choice_of(Reader& reader) {
 void parse_rgb(Reader& reader, std::string_view word, Number& color) {
     const bool is_srgb = word[0] == 's';
     const std::string_view kind = word.substr(is_srgb ? 4 : 3);
-    const int size = 3 + int(kind.size());
-    const Number n = resized(reader, parse_number(reader), size);
-    for (size_t i = 0; i < 3; ++i)
-        color.v[i] = is_srgb ? from_srgb(n.v[i], reader.gamma) : n.v[i];
-    color.v[3] = kind == "f" || kind == "ft" ? n.v[3] : 0;
-    color.v[4] = kind == "t" ? n.v[3] : kind == "ft" ? n.v[4] : 0;
+    // A float stands for the components that the word names, while a vector keeps all of its own.
+    Number n = parse_number(reader);
+    if (n.size == 1)
+        n = resized(reader, n, 3 + int(kind.size()));
+    color = resized(reader, n, 5);
+    for (size_t i = 0; is_srgb && i < 3; ++i)
+        color.v[i] = from_srgb(color.v[i], reader.gamma);
+    if (kind == "t")
+        color.v[4] = std::exchange(color.v[3], 0.0);
 }
 
 /// Returns the index of the channel in `red 0.5` and the like; -1 for any other word.

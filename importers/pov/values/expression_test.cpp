@@ -23,6 +23,42 @@ TEST(PovExpression, FollowsTheOrderOfOperations) {
     EXPECT_VALUE(0.25, "rgbf <1, 1, 1, 0.25>.filter");
 }
 
+/// povray 3.7.0.10 prints these values.
+TEST(PovExpression, ColorsKeepAllComponentsOfVectors) {
+    EXPECT_VALUE(0.4, "C.filter", "#declare C = rgb <0.1, 0.2, 0.3, 0.4, 0.5>;");
+    EXPECT_VALUE(0.5, "C.transmit", "#declare C = rgb <0.1, 0.2, 0.3, 0.4, 0.5>;");
+    EXPECT_VALUE(0.5, "C.transmit", "#declare C = srgbf <0.1, 0.2, 0.3, 0.4, 0.5>;");
+    EXPECT_VALUE(0.4, "C.transmit", "#declare C = rgbt <0.1, 0.2, 0.3, 0.4, 0.5>;");
+    EXPECT_VALUE(0, "C.filter", "#declare C = rgbt <0.1, 0.2, 0.3, 0.4, 0.5>;");
+    EXPECT_VALUE(0, "C.filter + C.transmit", "#declare C = rgb 0.5;");
+    EXPECT_VALUE(0.5, "C.filter - C.transmit", "#declare C = rgbf 0.5;");
+    EXPECT_VALUE(0, "C.blue", "#declare C = rgb <0.1, 0.2>;");
+}
+
+TEST(PovExpression, FunctionsOfArraysAreCalled) {
+    const std::string functions =
+        "#declare F = array[2][1]; #declare F[0][0] = function (a) { 2 * a };"
+        "#declare F[1][0] = function { transform { translate 3*y } }; #declare G = F[0][0];";
+    EXPECT_VALUE(7, "V", functions + "#local V = F[0][0](G(1.5)) + 1;");
+    EXPECT_VALUE(5, "V", functions + "#declare V = F[1][0](x).y + F[0][0](1);");
+}
+
+/// povray 3.7.0.10 prints these values.
+TEST(PovExpression, FunctionsAddUpAndMultiply) {
+    EXPECT_VALUE(20, "F(2)", "#declare F = function (x) { sum(i, 1, 4, i * x) }");
+    EXPECT_VALUE(59.0625, "F(0.5)", "#declare F = function (a) { prod(i, 1, 4, i + a) }");
+    EXPECT_VALUE(4.5, "F(0)", "#declare F = function (a) { sum(i, 0.5, 3, i) }");
+    EXPECT_VALUE(1, "F(0)", "#declare F = function (a) { prod(i, 3, 1, i) + sum(i, 3, 1, i) }");
+    EXPECT_VALUE(8, "F(2)", "#declare F = function (x) { sum(x, 1, 3, x) + x }");
+    EXPECT_VALUE(42, "F(2)", "#declare N = 5; #declare F = function (x) { sum(i, 1, N+1, i) * x }");
+    EXPECT_VALUE(36, "F(2)",
+                 "#declare F = function (a) { sum(i, 1, 3, sum(j, 1, 3, j) * a / i) + "
+                 "a * 0 + 14 }");
+    const Result<Scene> varies = parsed_scene("#declare F = function (n) { sum(i, 1, n, i) };");
+    ASSERT_FALSE(varies);
+    EXPECT_NE(varies.error().message.find("as the bound of a sum or product"), std::string::npos);
+}
+
 TEST(PovExpression, ComparesAsPovrayDoes) {
     EXPECT_VALUE(7, "(1 < 1+1e-11) + 2*(1+1e-11 > 1) + 4*(1+1e-11 <= 1)");
     EXPECT_VALUE(3, "(1-1e-11 >= 1) + 2*(1 = 1+1e-11) + 4*(1 != 1+1e-11)");

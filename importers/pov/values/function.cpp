@@ -187,6 +187,8 @@ private:
             call_builtin(token, *function);
         } else if (text == "select") {
             choice(token);
+        } else if (text == "sum" || text == "prod") {
+            series(token, text == "sum" ? StepKind::Add : StepKind::Multiply);
         } else if (const auto* user_function = named<Function>(reader_, token)) {
             call_user(token, *user_function);
         } else if (find_builtin(text) || named<Number>(reader_, token) ||
@@ -261,6 +263,53 @@ private:
             reader_.fail(token.place,
                          fmt::format("found {} arguments to select, expected 3 or 4", given));
         program_.add(StepKind::Select, 0, given);
+    }
+
+    /// Reads `sum(NAME, FROM, TO, FORMULA)` or `prod(…)`: a call of the formula for each number.
+    void series(const Token& token, StepKind kind) {
+        reader_.expect('(', token.name->text);
+        const Token index = reader_.next();
+        if (index.kind != TokenKind::Name)
+            reader_.fail(index.place, fmt::format("found {}, expected the name of a number that {} "
+                                                  "counts up",
+                                                  found(index), token.name->text));
+        reader_.take_comma();
+        const double from = bound(), to = bound();
+        std::vector<std::string> parameters = parameters_;
+        std::ranges::replace(parameters, index.name->text, std::string());
+        parameters.push_back(index.name->text);
+        FormulaParser part(reader_, parameters);
+        const ProgramPtr program = part.program();
+        reader_.expect(')', token.name->text);
+        called_ = std::max(called_, part.depth());
+        count_operation();
+        program_.constant(kind == StepKind::Add ? 0 : 1);
+        for (double i = from; i <= to; ++i) {
+            for (uint32_t argument = 0; argument < parameters_.size(); ++argument)
+                program_.add(StepKind::Argument, argument);
+            program_.constant(i);
+            program_.call(program, uint32_t(parameters.size()));
+            program_.add(kind);
+        }
+    }
+
+    /// Reads a bound of a sum or product, and the comma behind it.
+    double bound() {
+        constexpr double kMaxBound = 10'000;
+        const Place at = reader_.peek().place;
+        const ProgramPtr program = FormulaParser(reader_, parameters_).program();
+        const Formula& formula = program->formula;
+        const size_t routines = formula.ends.size();
+        const size_t first = routines > 1 ? formula.ends[routines - 2] : 0; // step of the last one
+        const bool varies =
+            std::any_of(formula.steps.begin() + ptrdiff_t(first), formula.steps.end(),
+                        [](const FormulaStep& step) { return step.kind == StepKind::Argument; });
+        const double value = varies ? double(NAN) : (*program)({});
+        if (!(std::abs(value) <= kMaxBound))
+            reader_.fail(at, "expected a number from -10000 to 10000, which does not depend on the "
+                             "function's parameters, as the bound of a sum or product");
+        reader_.take_comma();
+        return value;
     }
 
     void call_user(const Token& token, const Function function) {
