@@ -43,6 +43,10 @@ const Solid kSolids[] = {
     {"superellipsoid_without_roundings", "superellipsoid { 0 }", 8},
     {"prism", "prism { 0, 2, 5, <0, 0>, <2, 0>, <2, 1>, <0, 1>, <0, 0> }", 4},
     {"prism_turned", "prism { 0, 2, 5, <0, 0>, <0, 1>, <2, 1>, <2, 0>, <0, 0> }", 4},
+    {"prism_not_closed", "prism { 0, 2, 3, <0, 0>, <2, 0>, <0, 1> }", 2},
+    {"prism_with_a_hole_not_closed",
+     "prism { 0, 2, 9, <0, 0>, <4, 0>, <4, 4>, <0, 4>, <0, 0>, <1, 1>, <1, 3>, <3, 3>, <3, 1> }",
+     24},
     {"prism_with_a_hole",
      "prism { 0, 2, 10, <0, 0>, <4, 0>, <4, 4>, <0, 4>, <0, 0>, <1, 1>, <1, 3>, <3, 3>, <3, 1>, "
      "<1, 1> }",
@@ -193,6 +197,8 @@ TEST(PovShapes, ParametricOnesEndAtTheirContainer) {
 TEST(PovShapes, ClippedOnesAreOpen) {
     EXPECT_NEAR(area("sphere { 0, 1 clipped_by { plane { y, 0 } } }"), 2 * pi, 0.01);
     EXPECT_NEAR(area("box { 0, 2 clipped_by { box { 1, 3 } } translate 5 }"), 3, 1e-5);
+    EXPECT_NEAR(area("#declare B = box { 0, 1 } box { 0, 2 clipped_by { B scale 2 translate 1 } }"),
+                3, 1e-5);
     EXPECT_NEAR(area("box { 0, 2 translate 5 clipped_by { box { 1, 3 } } }"), 0, 1e-9);
     EXPECT_NEAR(area("box { 0, 2 bounded_by { box { 1, 3 } } clipped_by { bounded_by } }"), 3,
                 1e-5);

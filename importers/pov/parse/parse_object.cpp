@@ -116,7 +116,17 @@ void parse_wrapped(Reader& reader, Object& object) {
     parse_modifiers(reader, object);
 }
 
-/// Reads clipped_by { objects } or clipped_by { bounded_by }, or the same for bounded_by.
+/// Moves copies of the objects, which other objects may share.
+void place_all(std::vector<ObjectPtr>& objects, const dmat4& by) {
+    for (ObjectPtr& object : objects) {
+        auto moved = std::make_shared<Object>(*object);
+        place(*moved, by);
+        object = std::move(moved);
+    }
+}
+
+/// Reads clipped_by { objects transformations } or clipped_by { bounded_by }, or the same for
+/// bounded_by.
 void parse_bounds(Reader& reader, Object& object, std::string_view what) {
     assert(what == "clipped_by" || what == "bounded_by");
     std::vector<ObjectPtr>& list = what == "clipped_by" ? object.clips : object.bounds;
@@ -128,6 +138,8 @@ void parse_bounds(Reader& reader, Object& object, std::string_view what) {
         list = object.clips;
     else
         parse_children(reader, holder);
+    while (const auto by = take_transform(reader))
+        place_all(holder.children, *by);
     list.insert(list.end(), holder.children.begin(), holder.children.end());
     reader.expect('}', what);
 }
@@ -224,12 +236,8 @@ void place(Object& object, const dmat4& by) {
         place(*object.inside_texture, by);
     if (object.interior)
         place(*object.interior, by);
-    for (std::vector<ObjectPtr>* list : {&object.clips, &object.bounds})
-        for (ObjectPtr& other : *list) {
-            auto moved = std::make_shared<Object>(*other); // other objects may share it
-            place(*moved, by);
-            other = std::move(moved);
-        }
+    place_all(object.clips, by);
+    place_all(object.bounds, by);
 }
 
 ObjectPtr parse_object(Reader& reader) {

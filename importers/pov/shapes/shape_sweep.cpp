@@ -65,6 +65,8 @@ std::vector<Contour> prism_contours(Curve curve, const std::vector<dvec2>& point
                 contour.push_back(curve_point(curve, &points[piece], double(i) / steps, nullptr));
             closed = same(curve_point(curve, &points[piece], 1, nullptr), first);
         }
+        if (!closed && curve == Curve::Linear) // a last side leads back, as povray says
+            contour.push_back(points.back());
         if (contour.size() >= 3)
             contours.push_back(std::move(contour));
         start = piece + (curve == Curve::Bezier ? 0 : lead + trail + 1);
