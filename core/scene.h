@@ -51,6 +51,7 @@ struct Finish {
     float irid = 0;
     float irid_thickness = 0;
     float irid_turbulence = 0;
+    NoiseKind irid_noise = NoiseKind::Corrected;
     vec3 irid_wavelengths{0.7f, 0.52f, 0.48f};
     float crand = 0; // up to this share of diffuse light is missing, at random from place to place
     /// A filter hides the surface's own light in proportion to its brightest component, as before

@@ -87,7 +87,7 @@ static vec3 interference(const SurfacePoint& surface, double light_cosine) {
     if (finish.irid_turbulence != 0)
         thickness *=
             1 + double(finish.irid_turbulence) *
-                    (2 * scalar_turbulence(surface.position, kOctaves, NoiseKind::Corrected) - 1);
+                    (2 * scalar_turbulence(surface.position, kOctaves, finish.irid_noise) - 1);
     const double way =
         thickness * (light_cosine + std::abs(glm::dot(surface.view, surface.normal)));
     vec3 factor;

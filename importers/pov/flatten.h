@@ -11,6 +11,7 @@ namespace ovc::pov {
 struct Look {
     vec3 ambient_light{1};
     vec3 irid_wavelengths{Finish{}.irid_wavelengths};
+    NoiseKind irid_noise = Finish{}.irid_noise;
     bool before_3_7 = false; // the scene's version is below 3.7
     uint64_t max_triangles = kDefaultMaxTriangles;
     std::optional<double> tolerance;       // as in ImportOptions

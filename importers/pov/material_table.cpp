@@ -234,6 +234,7 @@ ovc::Material MaterialTable::made(const Texture& texture, const Color& color, co
     finish.emission = texture.surface.emission;
     finish.ambient = texture.surface.ambient * look_.ambient_light + finish.emission;
     finish.irid_wavelengths = look_.irid_wavelengths;
+    finish.irid_noise = look_.irid_noise;
     if (interior.double_illuminate)
         finish.diffuse_back = finish.diffuse;
     finish.filter_by_brightest = look_.before_3_7;

@@ -51,7 +51,7 @@ void each_field(auto& io, Some<Finish> auto& f) {
     io(f.ambient, f.emission, f.diffuse, f.brilliance, f.phong, f.phong_size, f.specular,
        f.roughness, f.metallic, f.reflection, f.grazing_reflection, f.reflection_falloff, f.fresnel,
        f.metallic_reflection, f.conserve_energy, f.irid, f.irid_thickness, f.irid_turbulence,
-       f.irid_wavelengths, f.crand, f.filter_by_brightest, f.diffuse_back);
+       f.irid_noise, f.irid_wavelengths, f.crand, f.filter_by_brightest, f.diffuse_back);
 }
 
 void each_field(auto& io, Some<TransparentColor> auto& c) {

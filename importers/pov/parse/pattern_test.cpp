@@ -390,13 +390,14 @@ TEST(PovNormal, HasFacets) {
 
 TEST(PovTexture, FinishesHaveFilms) {
     const Scene scene =
-        textured_scene("global_settings { irid_wavelength rgb <0.6, 0.5, 0.4> }\n"
+        textured_scene("global_settings { irid_wavelength rgb <0.6, 0.5, 0.4> noise_generator 3 }\n"
                        "box { -1, 1 finish { irid { 0.3 thickness 0.5 turbulence 0.7 } } }");
     const Finish& finish = *box_material(scene).finish;
     EXPECT_EQ(finish.irid, 0.3f);
     EXPECT_EQ(finish.irid_thickness, 0.5f);
     EXPECT_EQ(finish.irid_turbulence, 0.7f);
     EXPECT_EQ(finish.irid_wavelengths, vec3(0.6f, 0.5f, 0.4f));
+    EXPECT_EQ(finish.irid_noise, NoiseKind::Perlin);
     EXPECT_TRUE(scene.omissions.empty());
 }
 
