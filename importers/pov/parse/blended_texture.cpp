@@ -28,11 +28,11 @@ static void add_sum(std::span<const WeightedTexture> parts, ProgramBuilder& to) 
     }
 }
 
-/// Returns the share of the parts behind the first, in [0, 1].
-static ProgramPtr share_of_rest(std::span<const WeightedTexture> parts) {
+/// Returns the share of the parts from `first` on, in [0, 1].
+static ProgramPtr share_of_rest(std::span<const WeightedTexture> parts, size_t first) {
     using FormulaOp = FormulaStep::Kind;
     ProgramBuilder share;
-    add_sum(parts.subspan(1), share);
+    add_sum(parts.subspan(first), share);
     add_sum(parts, share);
     share.constant(1e-30);
     share.add(FormulaOp::Builtin, builtin("max"), 2);
@@ -40,24 +40,38 @@ static ProgramPtr share_of_rest(std::span<const WeightedTexture> parts) {
     return share.take();
 }
 
+/// Blends the two halves of the parts, so that a place where one has no weight asks the other one
+/// alone. Subtracts the steps that the formulas take from `work`, which must not fall below 0.
+static std::optional<Texture> blended(std::span<const WeightedTexture> parts, bool on_corners,
+                                      double& work) {
+    if (parts.size() == 1)
+        return parts.front().texture;
+    const size_t half = parts.size() / 2;
+    auto map = std::make_shared<PatternMap>();
+    map->pattern.kind = Pattern::Kind::Function;
+    map->pattern.wave = Pattern::Wave::None;
+    map->on_corners = on_corners;
+    map->program = share_of_rest(parts, half);
+    if (!map->program)
+        return std::nullopt;
+    work -= formula_work(map->program->formula, map->program->textures.size());
+    if (work < 0)
+        return std::nullopt;
+    for (const auto& part : {parts.first(half), parts.subspan(half)}) {
+        std::optional<Texture> texture = blended(part, on_corners, work);
+        if (!texture)
+            return std::nullopt;
+        MapStop& stop = map->stops.emplace_back();
+        stop.at = map->stops.size() == 1 ? 0 : 1;
+        stop.texture = std::make_shared<const Texture>(std::move(*texture));
+    }
+    return mix_of(std::move(map));
+}
+
 std::optional<Texture> blended(const std::vector<WeightedTexture>& parts, bool on_corners) {
     assert(!parts.empty());
-    Texture all = parts.back().texture;
-    for (size_t i = parts.size() - 1; i-- > 0;) {
-        auto map = std::make_shared<PatternMap>();
-        map->pattern.kind = Pattern::Kind::Function;
-        map->pattern.wave = Pattern::Wave::None;
-        map->on_corners = on_corners;
-        map->program = share_of_rest(std::span(parts).subspan(i));
-        if (!map->program)
-            return std::nullopt;
-        map->stops.resize(2);
-        map->stops[0].texture = std::make_shared<const Texture>(parts[i].texture);
-        map->stops[1].at = 1;
-        map->stops[1].texture = std::make_shared<const Texture>(std::move(all));
-        all = mix_of(std::move(map));
-    }
-    return all;
+    double work = kMaxFormulaWork / 2; // the other half is for the textures
+    return blended(parts, on_corners, work);
 }
 
 bool same_look(const Texture& a, const Texture& b) {

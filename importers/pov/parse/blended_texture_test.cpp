@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/texture/pattern.h"
 #include "importers/pov/test_parse.h"
+#include "importers/scene_file/sound_textures.h"
 
 #include <gtest/gtest.h>
 
@@ -51,6 +52,16 @@ TEST(PovBlend, ABlobHasTheTexturesOfItsPartsByTheirStrengths) {
             .materials.at(0)
             .color,
         vec3(0, 0, 1));
+}
+
+TEST(PovBlend, ABlobMayHaveHundredsOfTextures) {
+    const Scene scene = blended_scene(
+        "#declare I = 0; blob { threshold 0.3 #while (I < 400) sphere { 3*<mod(I, 20), int(I/20), "
+        "0>, 1, 1 pigment { rgb I/400 } } #declare I = I + 1; #end }");
+    EXPECT_NEAR(second_share(scene, dvec3(57, 27, 0)), 0, 1e-12);
+    EXPECT_NEAR(second_share(scene, dvec3(0, 30, 0)), 1, 1e-12);
+    EXPECT_TRUE(scene.omissions.empty());
+    EXPECT_TRUE(has_sound_textures(scene));
 }
 
 TEST(PovBlend, ATriangleHasTheTexturesOfItsCorners) {
