@@ -145,7 +145,7 @@ struct Material {
     std::optional<PlacedTexture> mix;
     std::optional<Absorption> absorption; // of light that comes to the surface from inside
     std::vector<Medium> media;            // that fill the inside
-    bool hollow = false; // what fills the air around, as fog does, fills the inside too
+    bool hollow = false; // what fills the air, as fog does, and all media fill the inside too
     /// POV-Ray's substitute for focused light: shadow rays that pass the surface are multiplied by
     /// 1 + cosine ^ (45 x caustics), with the angle to the normal; 0: they are not.
     float caustics = 0;

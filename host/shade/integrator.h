@@ -37,6 +37,8 @@ public:
         std::rotate(left, left + 1, materials_.end());
         materials_.back() = kNone;
     }
+    /// Returns the materials, and kNone in the place of missing ones.
+    std::span<const uint32_t> all() const { return materials_; }
 
 private:
     std::array<uint32_t, 4> materials_{kNone, kNone, kNone, kNone}; // the last entered comes first

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <vector>
 
@@ -58,8 +59,11 @@ static bool is_inside(const Scene& scene, const Ray& ray, const Hit& hit) {
     return glm::dot(glm::cross(t[1] - t[0], t[2] - t[0]), ray.dir) > 0;
 }
 
-static bool is_hollow(const Scene& scene, const Hit& hit) {
-    return scene.materials[scene.meshes[hit.id.mesh].material].hollow;
+/// Returns whether the path is in a solid that keeps out fog and media, its own included.
+static bool is_in_solid(const Scene& scene, const Path& path) {
+    return std::ranges::any_of(path.within.all(), [&](uint32_t material) {
+        return material < scene.materials.size() && !scene.materials[material].hollow;
+    });
 }
 
 static std::vector<const Medium*> pointers_to(const std::vector<Medium>& media) {
@@ -102,27 +106,29 @@ static bool sends_rays_on(const SurfacePoint& surface) {
                   : surface.material->mirror != 0;
 }
 
+static bool has_fog(const Background& background) {
+    return !background.fogs.empty() || !background.rainbows.empty();
+}
+
 static bool lets_light_through(const Scene& scene) {
     return std::any_of(scene.materials.begin(), scene.materials.end(),
                        [](const Material& m) { return m.transmission > 0; });
 }
 
-/// Returns how often the mesh encloses the point: the times that a ray from it leaves the mesh,
-/// less those that it enters it.
-static int times_around(const Soup& soup, uint32_t mesh, const dvec3& point) {
-    const dvec3 way(0.5773, 0.5127, 0.6355); // along no axis, so that it meets no edges of boxes
-    int times = 0;
+/// Returns how often the line along `way` through the point crosses the mesh with the point on the
+/// inside, less how often with it on the outside: twice for each time that the mesh is around it.
+static int sides_around(const Soup& soup, uint32_t mesh, const dvec3& point, const dvec3& way) {
+    int sides = 0;
     for (uint32_t prim = 0; prim < soup.chunks[mesh].size(); ++prim) {
         const Triangle t = soup.triangle({mesh, prim});
         const dvec3 a = t[0] - point, b = t[1] - point, c = t[2] - point;
         const double u = glm::dot(way, glm::cross(b, c)), v = glm::dot(way, glm::cross(c, a)),
                      w = glm::dot(way, glm::cross(a, b));
-        const bool leaves = u >= 0 && v >= 0 && w >= 0, enters = u <= 0 && v <= 0 && w <= 0;
         const double volume = glm::dot(a, glm::cross(b, c)); // above 0: the point is on the inside
-        if (leaves != enters && (leaves ? volume > 0 : volume < 0))
-            times += leaves ? 1 : -1;
+        if ((u >= 0 && v >= 0 && w >= 0) != (u <= 0 && v <= 0 && w <= 0) && volume != 0)
+            sides += volume > 0 ? 1 : -1;
     }
-    return times;
+    return sides;
 }
 
 /// Returns whether some of the surface is metal.
@@ -184,16 +190,31 @@ Whitted::Whitted(const Scene& scene, const vec3& up, const WhittedOptions& optio
             containers_[m] = uint16_t(media_.size());
             media_.push_back(pointers_to(scene.materials[m].media));
         }
-    if (!options.eye || media_.size() == 1 || scene.on_disk)
-        return;
-    std::vector<int> times(media_.size()); // that the eye is in each container
-    for (uint32_t mesh = 0; mesh < scene.meshes.size(); ++mesh)
-        if (const uint32_t material = scene.meshes[mesh].material;
-            material < containers_.size() && containers_[material] != 0)
-            times[containers_[material]] += times_around(scene.soup, mesh, *options.eye);
-    for (size_t number = 1; number < times.size(); ++number)
-        for (; times[number] > 0; --times[number])
-            around_eye_.enter(uint16_t(number));
+    if (options.eye && !scene.on_disk && (has_media_ || has_fog(scene.background)))
+        look_around(*options.eye);
+}
+
+/// Finds the solids and the containers of media that the eye is in.
+void Whitted::look_around(const dvec3& eye) {
+    // Along no axis, so that they meet no edges of boxes. Lines that pass an open shape disagree.
+    constexpr dvec3 kWays[] = {{0.5773, 0.5127, 0.6355}, {-0.09, 0.99, 0.11}, {0.68, -0.23, -0.69}};
+    std::vector<int> sides(scene_.materials.size(), std::numeric_limits<int>::max()); // of each
+    for (const dvec3& way : kWays) {
+        std::vector<int> along(sides.size());
+        for (uint32_t mesh = 0; mesh < scene_.meshes.size(); ++mesh)
+            if (const uint32_t material = scene_.meshes[mesh].material;
+                material < along.size() &&
+                (containers_[material] != 0 || !scene_.materials[material].hollow))
+                along[material] += sides_around(scene_.soup, mesh, eye, way);
+        std::ranges::transform(sides, along, sides.begin(),
+                               [](int a, int b) { return std::min(a, b); });
+    }
+    for (uint32_t material = 0; material < sides.size(); ++material)
+        for (; sides[material] > 0; sides[material] -= 2) // an endless plane has one side
+            if (scene_.materials[material].hollow)
+                around_eye_.enter(containers_[material]);
+            else
+                eye_within_.enter(material);
 }
 
 void Whitted::shade(std::span<const Ray> rays, std::span<const Path> paths,
@@ -202,8 +223,10 @@ void Whitted::shade(std::span<const Ray> rays, std::span<const Path> paths,
     all.reserve(rays.size());
     for (size_t i = 0; i < rays.size(); ++i) {
         Path path = paths[i];
-        if (path.kind == RayKind::Camera)
+        if (path.kind == RayKind::Camera) {
             path.inside = around_eye_;
+            path.within = eye_within_;
+        }
         dim_by_fog(rays[i], hits[i], path, film);
         if (has_media_)
             dim_by_media(rays[i], hits[i], path, film, spawned);
@@ -226,12 +249,10 @@ void Whitted::shade(std::span<const Ray> rays, std::span<const Path> paths,
                 light_up(scene_.lights[light], light, met, film, spawned);
 }
 
-/// Takes the light that fog and rainbows keep from the path, and adds their own. There is none
-/// inside of solids.
+/// Takes the light that fog and rainbows keep from the path, and adds their own.
 void Whitted::dim_by_fog(const Ray& ray, const Hit& hit, Path& path, Film& film) const {
     const Background& background = scene_.background;
-    if ((background.fogs.empty() && background.rainbows.empty()) ||
-        (hit.is_hit() && is_inside(scene_, ray, hit) && !is_hollow(scene_, hit)))
+    if (!has_fog(background) || is_in_solid(scene_, path))
         return;
     const double end = hit.is_hit() ? hit.t : double(INFINITY);
     for (const ThroughFog& fog : {through_fog(background.fogs, ray, end),
@@ -244,25 +265,12 @@ void Whitted::dim_by_fog(const Ray& ray, const Hit& hit, Path& path, Film& film)
 /// The way of a ray that hits nothing through media, as povray has it.
 static constexpr double kEndlessMedia = 1e7;
 
-uint16_t Whitted::container_of(const Hit& hit) const {
-    const uint32_t material = scene_.meshes[hit.id.mesh].material;
-    return material < containers_.size() ? containers_[material] : uint16_t(0);
-}
-
-/// Returns the media on a ray's way to its hit: those of all containers that it is in, and those of
-/// the air, except for solids that are not hollow.
-std::vector<const Medium*> Whitted::media_before(const Ray& ray, const Path& path,
-                                                 const Hit& hit) const {
-    const bool leaves = hit.is_hit() && is_inside(scene_, ray, hit);
-    Containers inside = path.inside;
-    if (leaves && container_of(hit) == 0 && !is_hollow(scene_, hit))
+/// Returns the media on a ray's way: those of all containers that it is in, and those of the air.
+std::vector<const Medium*> Whitted::media_along(const Path& path) const {
+    if (is_in_solid(scene_, path))
         return {};
-    if (leaves && !inside.includes(container_of(hit)))
-        inside.enter(container_of(hit));
     std::vector<const Medium*> media = air_;
-    if (leaves && !is_hollow(scene_, hit))
-        media.clear();
-    for (const uint16_t number : inside.numbers)
+    for (const uint16_t number : path.inside.numbers)
         media.insert(media.end(), media_[number].begin(), media_[number].end());
     return media;
 }
@@ -288,7 +296,7 @@ static void add_cone_crossings(const Light& light, const Ray& ray, double end,
 /// scatter.
 void Whitted::dim_by_media(const Ray& ray, const Hit& hit, Path& path, Film& film,
                            Spawned& spawned) const {
-    const std::vector<const Medium*> media = media_before(ray, path, hit);
+    const std::vector<const Medium*> media = media_along(path);
     if (media.empty())
         return;
     const double end = hit.is_hit() ? hit.t : kEndlessMedia / glm::length(ray.dir);

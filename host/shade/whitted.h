@@ -56,11 +56,11 @@ public:
 
 private:
     struct Met;
+    void look_around(const dvec3& eye);
     void dim_by_fog(const Ray& ray, const Hit& hit, Path& path, Film& film) const;
     void dim_by_media(const Ray& ray, const Hit& hit, Path& path, Film& film,
                       Spawned& spawned) const;
-    uint16_t container_of(const Hit& hit) const;
-    std::vector<const Medium*> media_before(const Ray& ray, const Path& path, const Hit& hit) const;
+    std::vector<const Medium*> media_along(const Path& path) const;
     void scatter(const ScatteringPlace& from, const dvec3& way, const Path& path, uint32_t turn,
                  Film& film, Spawned& spawned) const;
     vec3 share_of_air(const Light& light, const Ray& ray) const;
@@ -79,6 +79,7 @@ private:
     std::vector<std::vector<const Medium*>> media_; // by a container's number; none has 0
     std::vector<uint16_t> containers_;              // their numbers, by material
     Containers around_eye_;
+    Solids eye_within_; // of which those are not listed that are hollow
 };
 
 } // namespace ovc

@@ -13,6 +13,7 @@ struct Look {
     vec3 irid_wavelengths{Finish{}.irid_wavelengths};
     NoiseKind irid_noise = Finish{}.irid_noise;
     bool before_3_7 = false; // the scene's version is below 3.7
+    bool has_media = false;  // or fog or rainbows, for which it counts which objects are hollow
     uint64_t max_triangles = kDefaultMaxTriangles;
     std::optional<double> tolerance;       // as in ImportOptions
     std::function<void(const Note&)> tell; // gets the notes of all objects drawn; may be empty

@@ -158,6 +158,7 @@ void Gatherer::inherit(const Object& object, Inherited& from) {
         from.interior = {&*object.interior, from.placed};
     from.hollow = from.hollow || object.hollow;
     from.interior.hollow = from.hollow;
+    from.interior.is_sheet = from.interior.is_sheet || !object.has_inside;
     from.double_illuminate = from.double_illuminate || object.double_illuminate;
     from.interior.double_illuminate = from.double_illuminate;
     from.placed = from.placed * object.placed;

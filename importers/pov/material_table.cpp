@@ -263,7 +263,7 @@ ovc::Material MaterialTable::made(const Texture& texture, const Color& color, co
     const double ior = texture.surface.ior.value_or(interior.interior ? interior.interior->ior : 1);
     material.ior = is_usable_ior(ior) ? ior : 1;
     material.finish = finish;
-    material.hollow = interior.hollow && material.transmission > 0;
+    material.hollow = look_.has_media && (interior.hollow || interior.is_sheet);
     if (interior.interior)
         fill(interior, material);
     if (texture.normal.pattern.pattern)

@@ -12,11 +12,13 @@ namespace ovc::pov {
 void tell_all(const Notes& notes, const Look& look);
 
 /// An interior, the transformation that brings its media into the world, whether the object is
-/// hollow, without which it has no media, and whether light lights both of its sides.
+/// hollow, without which it has no media, whether it has no inside at all, and whether light lights
+/// both of its sides.
 struct PlacedInterior {
     const Interior* interior = nullptr; // null: none
     dmat4 placed{1};
     bool hollow = false;
+    bool is_sheet = false;
     bool double_illuminate = false;
 };
 

@@ -106,6 +106,7 @@ public:
         look_.tell = [&](const Note& note) { reader_.omit(note.kind, note.place, note.sentence); };
         look_.before_3_7 = !reader_.has_linear_colors();
         look_.irid_noise = reader_.noise_kind();
+        look_.has_media = reader_.has_media;
         scene.background.tints = !look_.before_3_7;
         if (scene.radiosity && !look_.before_3_7)
             look_.ambient_light = vec3(0); // as povray since 3.7

@@ -72,6 +72,7 @@ Pigment parse_density(Reader& reader) {
 
 Media parse_media(Reader& reader) {
     const Deeper deeper(reader);
+    reader.has_media = true;
     Media media;
     Closeness how;
     bool told = false;

@@ -33,6 +33,7 @@ SkySphere parse_sky_sphere(Reader& reader) {
 Fog parse_fog(Reader& reader) {
     Fog fog;
     fog.noise = reader.noise_kind();
+    reader.has_media = true;
     bool on_ground = false;
     reader.expect('{', "fog");
     while (!reader.take('}')) {
@@ -77,6 +78,7 @@ Fog parse_fog(Reader& reader) {
 
 Rainbow parse_rainbow(Reader& reader) {
     Rainbow bow;
+    reader.has_media = true;
     reader.expect('{', "rainbow");
     while (!reader.take('}')) {
         if (const auto named_bow = take_named_if<Rainbow>(reader))

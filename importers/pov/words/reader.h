@@ -155,6 +155,7 @@ public:
     ImageSize picture{640, 480};
     Moment moment;
     bool moves = false;             // the scene has asked for the moment
+    bool has_media = false;         // it names media, fog or rainbows
     Texture defaults;               // of #default
     TexturePtr shared_defaults;     // the same, for the objects that are drawn from here on
     std::optional<NoiseKind> noise; // noise_generator of global_settings
