@@ -17,7 +17,8 @@ namespace ovc::pov {
 /// A function of space that is below 0 inside. Several threads call its functions at once.
 struct Field {
     std::function<double(const dvec3&)> value;
-    /// Returns a function that has the same values in this box only, but is cheaper. May be empty.
+    /// Returns a function that has the same values in this box only, but is cheaper. Where the
+    /// field is nowhere 0 in the box, the same signs will do. May be empty.
     std::function<std::function<double(const dvec3&)>(const Box&)> within;
 };
 

@@ -32,10 +32,6 @@ double Polynomial::operator()(const dvec3& p) const {
 
 namespace {
 
-struct Range {
-    double lo, hi;
-};
-
 /// Returns the range of x ^ exponent for x in [lo, hi].
 Range power(double lo, double hi, int exponent) {
     assert(exponent >= 0);
@@ -53,12 +49,12 @@ Range power(double lo, double hi, int exponent) {
 
 } // namespace
 
-double Polynomial::min_over(const Box& box) const {
+Range Polynomial::range_over(const Box& box) const {
     std::array<std::array<Range, 3>, kMaxOrder + 1> powers; // of the coordinates
     for (int k = 0; k <= highest; ++k)
         for (int i = 0; i < 3; ++i)
             powers[size_t(k)][size_t(i)] = power(box.lo[i], box.hi[i], k);
-    double sum = 0;
+    Range sum{0, 0};
     for (const Term& term : terms) {
         Range product{term.factor, term.factor};
         for (size_t i = 0; i < 3; ++i) {
@@ -67,7 +63,8 @@ double Polynomial::min_over(const Box& box) const {
                                    product.hi * r.hi};
             product = {*std::min_element(all, all + 4), *std::max_element(all, all + 4)};
         }
-        sum += product.lo;
+        sum.lo += product.lo;
+        sum.hi += product.hi;
     }
     return sum;
 }
@@ -110,7 +107,7 @@ double farthest(const Polynomial& polynomial, const Box& whole, int axis, int wa
         for (const int half : {0, 1}) {
             Box part = box;
             (half ? part.lo : part.hi)[longest] = box.center()[longest];
-            if (!(polynomial.min_over(part) > 0))
+            if (!(polynomial.range_over(part).lo > 0))
                 open.push(part);
         }
     }

@@ -11,6 +11,10 @@ namespace ovc::pov {
 /// POV-Ray's largest.
 inline constexpr int kMaxOrder = 35;
 
+struct Range {
+    double lo, hi;
+};
+
 struct Polynomial {
     struct Term {
         double factor;
@@ -21,8 +25,8 @@ struct Polynomial {
 
     void add(const Term& term);
     double operator()(const dvec3& p) const;
-    /// Returns a lower bound on the values in the box.
-    double min_over(const Box& box) const;
+    /// Returns bounds on the values in the box.
+    Range range_over(const Box& box) const;
 };
 
 /// Returns the polynomial with factors_of(order) factors, whose terms are in POV-Ray's order: by

@@ -264,11 +264,27 @@ dvec3 expanded(const dvec3& p) {
     return {std::sinh(p.x), std::sinh(p.y), std::sinh(p.z)};
 }
 
+/// Returns the field of a polynomial of points that `to_point`, which grows along each axis, makes
+/// of places. In a box without a part of the surface one value stands for all.
+template <class ToPoint>
+Field polynomial_field(const Polynomial& polynomial, const ToPoint& to_point) {
+    Field field;
+    field.value = [&polynomial, to_point](const dvec3& p) { return polynomial(to_point(p)); };
+    field.within = [&polynomial, to_point, value = field.value](const Box& box) {
+        const Range range = polynomial.range_over({to_point(box.lo), to_point(box.hi)});
+        using Value = decltype(value);
+        if (range.lo > 0)
+            return Value([](const dvec3&) { return 1.0; });
+        return range.hi < 0 ? Value([](const dvec3&) { return -1.0; }) : value;
+    };
+    return field;
+}
+
 /// Cuts an endless polynomial in a large box so that cells grow with the distance from the origin,
 /// near which formulas usually bend. Cells of one size would be larger than all that.
 size_t cut_graded(const Polynomial& polynomial, const Box& box, int cells, Facets& out) {
     const size_t before = out.corners.size();
-    const Field field{[&](const dvec3& p) { return polynomial(expanded(p)); }, {}};
+    const Field field = polynomial_field(polynomial, &expanded);
     // Far away, where endless surfaces are cut three times as finely, nobody sees it.
     const size_t shown = cut_field(field, compressed(box), std::max(cells / 3, 1), out);
     for (size_t i = before; i < out.corners.size(); ++i) {
@@ -295,7 +311,7 @@ void finish_polynomial(Reader& reader, Object& object, Polynomial polynomial) {
         if (max_component(tight.extent()) > kLargestEven)
             return cut_graded(polynomial, tight, cells, out);
         const double margin = 0.02 * max_component(tight.extent());
-        return cut_field({[&polynomial](const dvec3& p) { return polynomial(p); }, {}},
+        return cut_field(polynomial_field(polynomial, [](const dvec3& p) { return p; }),
                          tight.padded(margin), cells, out);
     };
     object.shape = std::move(shape);
