@@ -50,13 +50,15 @@ dvec3 through(const aiMatrix4x4& place, const aiVector3D& point) {
 }
 
 /// Returns the angle along the shorter side of the picture; where a glTF tells no shape, the
-/// upright one, which it then has in every picture. For glTF, Assimp 5 tells the upright angle
-/// times the shape; for other formats the whole angle across, whatever its header says.
+/// upright one, which it then has in every picture. Assimp tells the whole angle across, whatever
+/// its header says, but before version 5.3 for glTF the upright angle times the shape.
 double angle_of_view(const aiCamera& source, bool is_gltf) {
     const double shape = source.mAspect > 0 ? source.mAspect : 1;
-    const double known = is_gltf ? source.mHorizontalFOV / shape : source.mHorizontalFOV;
-    const double by_height = is_gltf ? std::min(shape, 1.0) : 1 / std::max(shape, 1.0);
-    return 2 * std::atan(std::tan(known / 2) * by_height);
+    const unsigned major = aiGetVersionMajor();
+    const bool by_shape = is_gltf && (major < 5 || (major == 5 && aiGetVersionMinor() < 3));
+    const double upright = by_shape ? std::tan(source.mHorizontalFOV / shape / 2)
+                                    : std::tan(source.mHorizontalFOV / 2) / shape;
+    return 2 * std::atan(upright * std::min(shape, 1.0));
 }
 
 /// Places the camera where its node stands. Returns nothing for an orthographic camera, whose
