@@ -43,7 +43,9 @@ class Pictures:
                     *options], self.environment)
 
     def kernels_kept(self):
-        return sum(path.is_file() for path in self.kernels.rglob("*"))
+        """Their files and bytes. Mesa since version 24 keeps all kernels in the same files."""
+        sizes = [path.stat().st_size for path in self.kernels.rglob("*") if path.is_file()]
+        return len(sizes), sum(sizes)
 
     def bytes_of(self, scene, *options):
         code, said, peak = self.render(scene, *options)
@@ -56,7 +58,7 @@ class Pictures:
 
         Which kernels a run needs depends on when pages come, so the first may not be the last.
         """
-        kept = -1
+        kept = None
         while kept != self.kernels_kept():
             kept = self.kernels_kept()
             found = self.bytes_of(scene, *options)
