@@ -98,6 +98,7 @@ private:
         return false;
     }
     void take_format(const OIIO::ImageSpec& file);
+    bool read_tile_at(int subimage, int miplevel, int x, int y, int z, void* data);
     bool make_pyramid();
     bool read_rows(int first, int count, std::vector<float>& values);
     void decode(std::vector<float>& values) const;
@@ -216,11 +217,18 @@ bool LinearInput::make_pyramid() {
     return true;
 }
 
-/// Several threads of the cache may ask for tiles at once.
+/// Several threads of the cache may ask for tiles at once. A tile that cannot be read has no
+/// values; whoever samples asks the picture's ReadFailure afterwards.
 bool LinearInput::read_native_tile(int subimage, int miplevel, int x, int y, int z, void* data) {
     const lock_guard lock(*this);
+    if (!read_tile_at(subimage, miplevel, x, y, z, data))
+        picture_.failure->note(geterror());
+    return true;
+}
+
+bool LinearInput::read_tile_at(int subimage, int miplevel, int x, int y, int z, void* data) {
     if (!seek_subimage(subimage, miplevel))
-        return false;
+        return fail("a level of it cannot be read");
     if (has_mipmaps_) {
         std::vector<float> values(m_spec.tile_pixels() * size_t(m_spec.nchannels));
         if (!input_->read_tile(x, y, z, OIIO::TypeFloat, values.data()))
@@ -238,6 +246,18 @@ bool LinearInput::read_native_tile(int subimage, int miplevel, int x, int y, int
 }
 
 } // namespace
+
+void ReadFailure::note(const std::string& sentence) {
+    const std::scoped_lock lock(mutex_);
+    if (!is_noted_)
+        sentence_ = sentence;
+    is_noted_ = true;
+}
+
+std::string ReadFailure::sentence() const {
+    const std::scoped_lock lock(mutex_);
+    return sentence_;
+}
 
 std::string name_picture(const NamedPicture& picture) {
     NamedPictures& pictures = named_pictures();

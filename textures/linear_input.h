@@ -3,7 +3,10 @@
 // that filters take means of light. The cache itself knows no encodings.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
+#include <memory>
+#include <mutex>
 #include <span>
 #include <string>
 
@@ -11,11 +14,28 @@
 
 namespace ovc {
 
+/// Says why tiles of a picture cannot be read. The cache is not told, because OpenImageIO 2.5 ends
+/// the process where a picture fails while several threads ask for it. Any number of threads may
+/// call the functions.
+class ReadFailure {
+public:
+    /// The first sentence counts.
+    void note(const std::string& sentence);
+    bool is_noted() const { return is_noted_; }
+    std::string sentence() const;
+
+private:
+    mutable std::mutex mutex_;
+    std::string sentence_;
+    std::atomic<bool> is_noted_{false};
+};
+
 /// A picture that the cache may open, as the caller of ovc_textures_api::open() names it.
 struct NamedPicture {
     std::string file;
     std::span<const unsigned char> bytes; // instead of the file's; empty: they are in the file
     double gamma = 0;                     // 0: sRGB's curve
+    std::shared_ptr<ReadFailure> failure; // not null
 };
 
 /// Notes the picture, and returns the name by which make_linear_input() opens it. Any number of

@@ -10,6 +10,7 @@
 #include <deque>
 #include <exception>
 #include <filesystem>
+#include <memory>
 #include <mutex>
 #include <shared_mutex>
 #include <stdexcept>
@@ -17,8 +18,9 @@
 struct ovc_textures_ {
     struct OpenPicture {
         std::string name; // in the cache
-        OIIO::TextureSystem::TextureHandle* handle;
-        int channels;
+        std::shared_ptr<ovc::ReadFailure> failure;
+        OIIO::TextureSystem::TextureHandle* handle = nullptr;
+        int channels = 0;
     };
 
     std::shared_mutex mutex; // of the pictures, which stay where they are while others are added
@@ -123,10 +125,12 @@ int open(ovc_textures textures, ovc_picture* picture, uint32_t* number) {
         if (!picture->bytes && !std::filesystem::is_regular_file(picture->file))
             throw std::runtime_error("it is no regular file");
         const auto* bytes = static_cast<const unsigned char*>(picture->bytes);
-        OpenPicture opened{
-            ovc::name_picture(
-                {picture->file, {bytes, bytes ? picture->byte_count : 0}, picture->gamma}),
-            nullptr, 0};
+        OpenPicture opened;
+        opened.failure = std::make_shared<ovc::ReadFailure>();
+        opened.name = ovc::name_picture({picture->file,
+                                         {bytes, bytes ? picture->byte_count : 0},
+                                         picture->gamma,
+                                         opened.failure});
         const OIIO::ImageSpec spec = spec_of(textures, opened);
         opened.channels = spec.nchannels;
         opened.handle = textures->system->get_texture_handle(OIIO::ustring(opened.name));
@@ -172,6 +176,8 @@ int sample(ovc_textures textures, uint32_t number, const ovc_texture_area* area,
                                        options, area->s, 1 - area->t, area->a[0], -area->a[1],
                                        area->b[0], -area->b[1], channels, rgba))
             throw std::runtime_error(error_of(*textures->system, picture.name));
+        if (picture.failure->is_noted())
+            throw std::runtime_error(first_line(picture.failure->sentence(), picture.name));
         spread_channels(channels, rgba);
         const bool is_beyond = (area->wrap_s == OVC_WRAP_BLACK && (area->s < 0 || area->s > 1)) ||
                                (area->wrap_t == OVC_WRAP_BLACK && (area->t < 0 || area->t > 1));
