@@ -17,7 +17,7 @@ install_packages() {
         return
     fi
     command -v apt-get >/dev/null || {
-        echo "install.sh: apt-get not found; on a system other than Debian 12 install" \
+        echo "install.sh: apt-get not found; on a system other than Debian install" \
             "the equivalents of: ${missing[*]}" >&2
         exit 1
     }
