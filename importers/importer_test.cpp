@@ -260,7 +260,10 @@ TEST(Importer, AssimpsFormatsSurviveDamage) {
     folder.write("rubbish.glb", "glTF");
     // Assimp's own way to cut polygons ends the process here.
     folder.write("no corners.off", "OFF\n4 2 0\n0 0 0\n1 0 2 3-13 0 2 3-1");
-    EXPECT_EQ(folder.failure("no corners.off"), "0 triangles");
+    EXPECT_THAT(
+        folder.failure("no corners.off"),
+        testing::AnyOf("0 triangles", // Assimp 5.4 refuses the file
+                       testing::HasSubstr("The number of faces in the header is incorrect")));
     // Assimp asserts that the part is there.
     const char* const part = "<Relationships><Relationship Id=\"r\" Target=\"/3D/none.model\" Type="
                              "\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/>"

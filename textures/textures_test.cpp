@@ -261,8 +261,10 @@ TEST(Textures, RefusesPicturesOfImpossibleSizesAndFilesWithoutEnd) {
         const uint32_t number = cache.open(file);
         if (*c.sentence) {
             EXPECT_EQ(number, ~0u) << c.contents;
-            EXPECT_NE(std::string(api().last_error()).find(c.sentence), std::string::npos)
-                << api().last_error();
+            const std::string said = api().last_error();
+            EXPECT_TRUE(said.find(c.sentence) != said.npos ||
+                        said.find("corrupt input") != said.npos) // of OpenImageIO 2.5
+                << said;
         } else if (number != ~0u) {
             const ovc_texture_area area = point_at(0.5f, 0.5f);
             float rgba[4];
