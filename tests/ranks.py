@@ -80,7 +80,7 @@ def compare_hits(overcast, folder, scene, counts):
     # Each rank opens the file: mpirun of Open MPI 5.0.7 doubles or drops parts of its own input.
     file = folder / "rays.txt"
     file.write_text(rays)
-    from_file = ["sh", "-c", f'exec "$0" "$@" < {file}']
+    from_file = ["sh", "-c", 'exec "$@" < "$0"', str(file)]
     stored = folder / "scene.ovc"
     run(0, [overcast, "convert", scene, str(stored), "--leaves", "40"])
     for ranks in counts:

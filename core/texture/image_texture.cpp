@@ -5,6 +5,7 @@
 
 #include "core/scene.h"
 #include "core/system/parallel.h"
+#include "core/texture/luminance.h"
 
 #include <algorithm>
 #include <cassert>
@@ -155,9 +156,8 @@ double measured(const ImageTexture& image) {
             const dvec2 at = (dvec2(double(i % width), double(i / width)) + 0.5) / size;
             PictureArea texel{at};
             texel.filter = TexelFilter::Nearest;
-            const vec3 color = of_channel(image, image.lookup->color(texel));
             sum += weight_of_texel(image, at, size.x / size.y) *
-                   (0.2126 * double(color.x) + 0.7152 * double(color.y) + 0.0722 * double(color.z));
+                   luminance(of_channel(image, image.lookup->color(texel)));
         }
         return sum;
     };

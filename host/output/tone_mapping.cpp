@@ -3,6 +3,7 @@
 #include "host/output/tone_mapping.h"
 
 #include "core/scene.h"
+#include "core/texture/luminance.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,10 +15,6 @@ static constexpr size_t kPixelsAtOnce = 4096;
 /// The reflectance of a photographer's grey card.
 static constexpr double kMiddleGrey = 0.18;
 
-static double luminance_of(const vec4& pixel) {
-    return 0.2126 * double(pixel.r) + 0.7152 * double(pixel.g) + 0.0722 * double(pixel.b);
-}
-
 double automatic_stops(const PixelSource& image) {
     double sum = 0;
     uint64_t count = 0;
@@ -26,7 +23,7 @@ double automatic_stops(const PixelSource& image) {
         pixels.resize(std::min(kPixelsAtOnce, image.size() - first));
         image.read(first, pixels);
         for (const vec4& pixel : pixels)
-            if (const double light = luminance_of(pixel); light > 0 && std::isfinite(light)) {
+            if (const double light = luminance(vec3(pixel)); light > 0 && std::isfinite(light)) {
                 sum += std::log2(light);
                 ++count;
             }

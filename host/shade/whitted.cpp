@@ -5,6 +5,7 @@
 #include "host/shade/lights/bounced_light.h"
 #include "host/shade/lights/thrown_light.h"
 #include "host/shade/surface/fog.h"
+#include "importers/file/picture_path.h"
 
 #include <fmt/format.h>
 
@@ -134,7 +135,7 @@ static int sides_around(const Soup& soup, uint32_t mesh, const dvec3& point, con
 /// Returns whether some of the surface is metal.
 static bool has_metal(const Scene& scene, const Material& material) {
     const uint32_t share = material.maps ? material.maps->metallic : kNone;
-    return share == kNone || scene.textures[share] != Texture{{}, {{0, {vec3(0)}, kNoTexture}}};
+    return share == kNone || scene.textures[share] != plain_texture(vec3(0));
 }
 
 void tell_simplifications(const Scene& scene, std::span<const Light> lights,

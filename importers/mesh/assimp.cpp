@@ -307,7 +307,7 @@ Result<Scene> read_assimp(const std::filesystem::path& path, const ImportOptions
         say(options.log, LogLevel::Warning, source->error("it has no triangles").message);
     return scene;
 } catch (const std::bad_alloc&) {
-    throw; // a file may claim more than there is
+    throw; // load() has a sentence on it
 } catch (const std::exception& e) {
     return Error{fmt::format("{}: Assimp failed: {}", path.string(), e.what())};
 }

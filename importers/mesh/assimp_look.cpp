@@ -13,7 +13,6 @@
 #include <assimp/material.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <optional>
 #include <span>

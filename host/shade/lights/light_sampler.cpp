@@ -2,6 +2,7 @@
 // Lights are chosen by their power, with a binary search in the running sums of their chances.
 #include "host/shade/lights/light_sampler.h"
 
+#include "core/texture/luminance.h"
 #include "core/texture/pattern.h"
 #include "host/shade/lights/thrown_light.h"
 
@@ -22,10 +23,6 @@ static constexpr uint64_t kMeasured = 4096;
 /// triangles.
 static constexpr int kMapLooks = 5;
 static constexpr uint32_t kFewTriangles = 10000;
-
-static double luminance(const vec3& c) {
-    return 0.2126 * double(c.x) + 0.7152 * double(c.y) + 0.0722 * double(c.z);
-}
 
 static dvec3 area_normal(const Triangle& t) {
     return 0.5 * glm::cross(t[1] - t[0], t[2] - t[0]);

@@ -4,6 +4,7 @@
 #include "host/shade/lights/sky_sampler.h"
 
 #include "core/system/parallel.h"
+#include "core/texture/luminance.h"
 #include "host/shade/shade.h"
 
 #include <algorithm>
@@ -43,8 +44,7 @@ double mean_of_cell(const Scene& scene, const vec3& up, size_t row, size_t colum
             const vec3 c = background_color(scene, up,
                                             direction_of(double(row) + (y + 0.5) / kLooks,
                                                          double(column) + (x + 0.5) / kLooks));
-            sum +=
-                std::max(0.2126 * double(c.x) + 0.7152 * double(c.y) + 0.0722 * double(c.z), 0.0);
+            sum += std::max(luminance(c), 0.0);
         }
     return std::isfinite(sum) ? sum / (kLooks * kLooks) : 0;
 }

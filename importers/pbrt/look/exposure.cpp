@@ -3,6 +3,8 @@
 // picture.
 #include "importers/pbrt/look/exposure.h"
 
+#include "core/texture/luminance.h"
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -19,10 +21,6 @@ constexpr uint64_t kSamples = 20000;
 /// mean 0.2 looks like most photographs do.
 constexpr double kDarkest = 0.02, kBrightest = 0.6, kWanted = 0.25;
 constexpr double kMaxExposure = 1e30; // colors times this are floats
-
-double luminance(const vec3& c) {
-    return 0.2126 * double(c.x) + 0.7152 * double(c.y) + 0.0722 * double(c.z);
-}
 
 /// Returns the triangle's area in the picture, in units of its window; 0 if it is out of view.
 double weight_in(const Camera& camera, const Triangle& t, const dvec3& middle) {
